@@ -1,0 +1,71 @@
+# Entry points of the project. Works with GNU make 3.81 or later on Linux and macOS (for Windows see CONTRIBUTING.md).
+#
+#   make demo                      the paper's tests and figures, from nothing
+#   make test PYTHON=python3.12    with another interpreter (delete .venv first if it was made with a different one)
+
+PYTHON ?= python3
+VENV   ?= .venv
+
+ifeq ($(OS),Windows_NT)
+BIN := $(VENV)/Scripts
+else
+BIN := $(VENV)/bin
+endif
+STAMP := $(VENV)/.mckibben-installed
+
+.DEFAULT_GOAL := help
+.PHONY: help setup demo test lint types docs examples bench lock clean
+
+help:
+	@echo "make setup      the virtual environment $(VENV), from requirements.lock"
+	@echo "make demo       the paper's tests and figures, into out/demo"
+	@echo "make test       the tests"
+	@echo "make lint       style;  make types  static types;  make docs  the documentation, into docs/_build/html"
+	@echo "make examples   every script of examples/;  make bench  the benchmarks"
+	@echo "make lock       renew requirements.lock from pyproject.toml;  make clean  delete what was built"
+
+setup: $(STAMP)
+
+# The stamp is older than the lock or pyproject.toml after either changes: then everything is installed again.
+# Dependencies come from the lock only, so the package itself is installed without them.
+$(STAMP): requirements.lock pyproject.toml
+	@$(PYTHON) -c "import sys; v = sys.version_info; sys.exit(0 if v >= (3, 11) else 'mckibben needs Python 3.11 or later and $(PYTHON) is %d.%d: make PYTHON=/path/to/python3.11' % v[:2])"
+	$(PYTHON) -m venv $(VENV)
+	$(BIN)/python -m pip install --disable-pip-version-check --quiet -r requirements.lock
+	$(BIN)/python -m pip install --disable-pip-version-check --quiet --no-deps -e .
+	@touch $@
+
+demo: setup
+	$(BIN)/mckibben reproduce -o out/demo --force
+
+test: setup
+	$(BIN)/python -m pytest -n 2
+
+lint: setup
+	$(BIN)/ruff check .
+	$(BIN)/ruff format --check .
+
+types: setup
+	$(BIN)/mypy
+
+docs: setup
+	$(BIN)/python -m sphinx -W --keep-going -q -b html docs docs/_build/html
+	@echo "docs/_build/html/index.html"
+
+# Agg: an example never waits for a window to be closed.
+examples: setup
+	@set -e; for script in examples/*.py; do \
+		echo "== $$script"; \
+		MPLBACKEND=Agg $(BIN)/python "$$script"; \
+	done
+
+bench: setup
+	$(BIN)/python benchmarks/run.py
+
+# Pins stay as they are unless pyproject.toml rules them out; UPGRADE=--upgrade takes the newest of everything.
+lock: setup
+	$(BIN)/uv pip compile $(UPGRADE) --universal --python-version 3.11 --extra dev --no-header --no-emit-index-url pyproject.toml -o requirements.lock
+
+clean:
+	rm -rf $(VENV) build dist out docs/_build docs/reference/spec.md .pytest_cache .mypy_cache .ruff_cache .hypothesis
+	find src tests examples benchmarks docs -name __pycache__ -type d -prune -exec rm -rf {} +

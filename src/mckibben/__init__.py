@@ -1,0 +1,30 @@
+"""Mechanics of McKibben artificial muscles. `import mckibben as mk`; heavy parts load when they are used."""
+
+from importlib import import_module
+from typing import Any
+
+_PUBLIC = {
+    "mckibben.spec": (
+        "Braid", "Chamber", "CustomLaw", "Ends", "Fibre", "Gent", "MooneyRivlin", "Muscle", "NeoHookean", "Ogden",
+        "Yeoh", "BlockedForce", "FreeContraction", "Isobaric", "Isometric", "Isotonic", "Protocol", "Step",
+        "SpecError",
+    ),
+    "mckibben.experiment": ("run", "MuscleWarning"),
+    "mckibben.result": ("Result",),
+}  # fmt: skip
+_HOME = {name: module for module, names in _PUBLIC.items() for name in names}
+_MODULES = ("presets",)
+
+__all__ = sorted([*_HOME, *_MODULES])
+
+
+def __getattr__(name: str) -> Any:
+    if name in _HOME:
+        return getattr(import_module(_HOME[name]), name)
+    if name in _MODULES:
+        return import_module(f"mckibben.{name}")
+    raise AttributeError(f"module 'mckibben' has no attribute {name!r}")
+
+
+def __dir__() -> list[str]:
+    return __all__

@@ -1,0 +1,36 @@
+"""Reading a case file (TOML): a muscle and a test."""
+
+from __future__ import annotations
+
+import tomllib
+from collections.abc import Iterable
+from os import PathLike
+from pathlib import Path
+
+from mckibben.spec.errors import SpecError
+from mckibben.spec.text import Case, apply_overrides, from_mapping
+
+__all__ = ["read_case"]
+
+
+def read_case(path: str | PathLike[str], overrides: Iterable[str] = (), *, test_required: bool = True) -> Case:
+    """The case in the file at `path`, with "dotted.name=value" overrides put in first.
+
+    Raises SpecError, in one line, for a file that cannot be read or is not TOML, and for whatever is wrong in it.
+    """
+    name = str(path)
+    try:
+        text = Path(path).read_bytes().decode("utf-8")
+        mapping = tomllib.loads(text)
+    except FileNotFoundError as error:
+        raise SpecError(name, allowed="there is no such file") from error
+    except OSError as error:
+        raise SpecError(name, allowed=f"cannot be read: {error.strerror or error}") from error
+    except UnicodeDecodeError as error:
+        said = f"is not UTF-8 text (byte {error.start})"
+        raise SpecError(name, allowed=said, advice="save the file as UTF-8") from error
+    except tomllib.TOMLDecodeError as error:  # its message ends in the line and column
+        raise SpecError(name, allowed=f"is not valid TOML: {error}") from error
+    except (RecursionError, ValueError) as error:  # brackets without end; a path with a null character
+        raise SpecError(name, allowed="cannot be read") from error
+    return from_mapping(apply_overrides(mapping, overrides), test_required=test_required)

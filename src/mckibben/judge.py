@@ -1,0 +1,92 @@
+"""The verdict on a state, in words that a lab user understands."""
+
+from enum import StrEnum
+
+import attrs
+import numpy as np
+
+from .solver.stability import Modes
+
+
+class Verdict(StrEnum):
+    """What a state is worth; compares equal to its word."""
+
+    STABLE = "stable"
+    UNSTABLE = "unstable"
+    INADMISSIBLE = "inadmissible"
+    NO_EQUILIBRIUM = "no equilibrium"
+    NOT_CONVERGED = "not converged"
+
+
+class Shape(StrEnum):
+    """The meridian: ordinary, overhanging its fitting (admissible), or one that the model cannot mean."""
+
+    ORDINARY = "ordinary"
+    OVERHANG = "overhang"
+    BEHIND_END_PLANE = "behind the end plane"
+    SELF_CONTACT = "self-contact"
+    ROLLED_UP = "rolled up"
+
+
+ADMISSIBLE = (Shape.ORDINARY, Shape.OVERHANG)
+
+
+@attrs.frozen
+class Judgement:
+    """A verdict, the sentence that explains it, and the shape."""
+
+    verdict: Verdict
+    reason: str
+    shape: Shape
+
+
+def shape_of(psi: np.ndarray, r: np.ndarray, z: np.ndarray) -> Shape:
+    """Shape of one meridian, from its slope [rad], radius and height [m] at points along it."""
+    if np.abs(psi).max() > np.pi:
+        return Shape.ROLLED_UP
+    slack = 1e-9 * (z[-1] - z[0])
+    if z.min() < z[0] - slack or z.max() > z[-1] + slack:
+        return Shape.BEHIND_END_PLANE
+    if np.abs(psi).max() <= np.pi / 2:
+        return Shape.ORDINARY
+    return Shape.SELF_CONTACT if _crosses(r, z) else Shape.OVERHANG
+
+
+def _crosses(r: np.ndarray, z: np.ndarray) -> bool:
+    """Whether the polyline (r, z) crosses itself."""
+    a, b = np.stack([r[:-1], z[:-1]], 1), np.stack([r[1:], z[1:]], 1)
+
+    def side(p: np.ndarray, q: np.ndarray, x: np.ndarray) -> np.ndarray:
+        d, e = q - p, x - p
+        return np.asarray(d[..., 0] * e[..., 1] - d[..., 1] * e[..., 0])
+
+    A, B, C, D = a[:, None], b[:, None], a[None], b[None]
+    crossing = (side(A, B, C) * side(A, B, D) < 0) & (side(C, D, A) * side(C, D, B) < 0)
+    i, j = np.indices(crossing.shape)
+    return bool((crossing & (np.abs(i - j) > 1)).any())
+
+
+REASONS = {
+    Shape.BEHIND_END_PLANE: "the tube bulges back behind its fitting, which the model does not stop",
+    Shape.SELF_CONTACT: "the wall touches itself, which the model does not stop",
+    Shape.ROLLED_UP: "the wall rolls up on itself",
+}
+
+
+def judge(modes: Modes, shape: Shape, length_held: bool) -> Judgement:
+    """Verdict on a converged state under its own control."""
+    if shape not in ADMISSIBLE:
+        return Judgement(Verdict.INADMISSIBLE, REASONS[shape], shape)
+    control = "length" if length_held else "force"
+    count = modes.length_control if length_held else modes.force_control
+    if count:
+        return Judgement(Verdict.UNSTABLE, f"the shape gives way under {control} control ({_modes(count)})", shape)
+    if modes.antisymmetric:
+        tips = f"one end bulges as the other shrinks ({_modes(modes.antisymmetric)}, antisymmetric)"
+        return Judgement(Verdict.UNSTABLE, f"the shape gives way to one side: {tips}", shape)
+    note = "; it overhangs its fitting" if shape == Shape.OVERHANG else ""
+    return Judgement(Verdict.STABLE, f"stable under {control} control{note}", shape)
+
+
+def _modes(count: int) -> str:
+    return "1 unstable mode" if count == 1 else f"{count} unstable modes"

@@ -1,0 +1,64 @@
+"""From what the user says to the numbers the energy needs.
+
+Numbers are leaves of JAX pytrees (they can be traced, differentiated and batched), choices are static.
+"""
+
+from collections.abc import Callable
+from typing import Any, NamedTuple
+
+import attrs
+import jax
+import jax.numpy as jnp
+
+from .. import spec
+
+Number = Any
+"""A float, a NumPy or JAX scalar, or a tracer."""
+
+Law = Callable[[Number, Number, Number, Any], Number]
+"""Hyperelastic law: energy density [Pa] from the three principal stretches and the law's constants."""
+
+
+class Parameters(NamedTuple):
+    """Numbers of one muscle in SI units."""
+
+    R0: Number  #: initial radius [m]
+    H0: Number  #: initial length [m]
+    theta0: Number  #: initial braid angle from the parallels [rad]
+    N: Number  #: number of fibres, both hands together
+    B1: Number  #: bending stiffness in the tangent plane [N m^2]
+    B2: Number  #: bending stiffness normal to the surface [N m^2]
+    B3: Number  #: torsional stiffness [N m^2]
+    helical: Number  #: 1 if the initial helix is stress-free, 0 if the straight fibre is
+    A0: Number  #: area of the chamber's wall in the initial cross-section [m^2] (Eq. 26)
+    law: Any  #: constants of the chamber's law, as the law's function takes them
+
+
+def parameters(muscle: "spec.Muscle") -> Parameters:
+    """Numbers of a muscle; differentiable with respect to every number of its specification."""
+    braid, fibre, chamber = muscle.braid, muscle.braid.fibre, muscle.chamber
+    if fibre.B1 is not None:
+        B1, B2, B3 = fibre.B1, fibre.B2, fibre.B3
+    else:  # round solid fibre: second moment pi d^4/64, torsion constant pi d^4/32
+        B1 = B2 = fibre.E * jnp.pi * fibre.diameter**4 / 64.0
+        B3 = fibre.E / (2.0 * (1.0 + fibre.nu)) * jnp.pi * fibre.diameter**4 / 32.0
+    thickness = 0.0 if chamber is None else chamber.thickness
+    numbers = Parameters(
+        braid.radius, braid.length, braid.angle, braid.fibres, B1, B2, B3,
+        1.0 if fibre.natural == "helical" else 0.0,
+        jnp.pi * thickness * (thickness + 2.0 * braid.radius),
+        () if chamber is None else constants(chamber.law),
+    )  # fmt: skip
+    return jax.tree.map(lambda x: jnp.asarray(x, float), numbers)
+
+
+def constants(law: Any) -> Any:
+    """Constants of a law as a pytree: a dict for a user's law, else the declared numbers in order."""
+    if isinstance(law, spec.CustomLaw):
+        return dict(law.constants)
+    return tuple(getattr(law, field.name) for field in attrs.fields(type(law)))
+
+
+def static_braid(p: Parameters) -> Number:
+    """a = 1/(R0 tan(theta0)) [1/m], the factor between sin(psi) and theta' (theory page)."""
+    return 1.0 / (p.R0 * jnp.tan(p.theta0))

@@ -1,0 +1,50 @@
+"""What the user says: the muscle and the test, immutable and checked, in SI numbers."""
+
+from mckibben.spec.declared import describe, walk
+from mckibben.spec.errors import SpecError
+from mckibben.spec.laws import LAWS, CustomLaw, Gent, Law, MooneyRivlin, NeoHookean, Ogden, Yeoh
+from mckibben.spec.loading import (
+    TESTS,
+    BlockedForce,
+    FreeContraction,
+    Isobaric,
+    Isometric,
+    Isotonic,
+    Protocol,
+    Step,
+    Test,
+)
+from mckibben.spec.muscle import Braid, Chamber, Ends, Fibre, Muscle
+from mckibben.spec.path import Path, PathMode
+from mckibben.spec.reference import reference_markdown
+
+__all__ = [
+    "LAWS",
+    "TESTS",
+    "BlockedForce",
+    "Braid",
+    "Chamber",
+    "CustomLaw",
+    "Ends",
+    "Fibre",
+    "FreeContraction",
+    "Gent",
+    "Isobaric",
+    "Isometric",
+    "Isotonic",
+    "Law",
+    "MooneyRivlin",
+    "Muscle",
+    "NeoHookean",
+    "Ogden",
+    "Path",
+    "PathMode",
+    "Protocol",
+    "SpecError",
+    "Step",
+    "Test",
+    "Yeoh",
+    "describe",
+    "reference_markdown",
+    "walk",
+]

@@ -1,0 +1,124 @@
+"""What is known about a field: `Declared`, and how to list the declared fields of a spec class or a spec object."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Iterator
+from enum import StrEnum
+from typing import TYPE_CHECKING, Any, Generic, TypeVar
+
+import attrs
+
+from mckibben.units import show
+
+__all__ = ["Declared", "Reads", "as_call", "declare", "describe", "evolved", "walk"]
+
+T = TypeVar("T")
+V = TypeVar("V")
+
+
+class Reads(Generic[V]):
+    """How a type checker sees a field: it reads as a V and takes text, quantities, words and so on."""
+
+    if TYPE_CHECKING:
+
+        def __get__(self, instance: object, owner: Any = None) -> V: ...
+
+        def __set__(self, instance: object, value: Any) -> None: ...
+
+
+@attrs.frozen(kw_only=True)
+class Declared:
+    """What is known about one field. `low`/`high` are SI; an open bound is itself excluded."""
+
+    kind: str
+    meaning: str
+    read: Callable[[Any, str, Declared], Any] = attrs.field(repr=False)
+    name: str = ""
+    unit: str = ""
+    display: str = ""
+    low: float = -math.inf
+    high: float = math.inf
+    low_open: bool = False
+    high_open: bool = False
+    source: str = ""
+    advice: str = ""
+    optional: bool = False
+    default: Any = attrs.Factory(lambda: attrs.NOTHING)
+    parts: tuple[type, ...] = ()
+    options: tuple[str, ...] = ()
+    stored: bool = True
+    """False for a field that only says how another is read (angle_from)."""
+
+    @property
+    def required(self) -> bool:
+        return self.default is attrs.NOTHING
+
+    @property
+    def allowed(self) -> str:
+        """The range as a phrase: "above 0 deg and below 90 deg"; empty when any value will do."""
+        if self.options:
+            return "one of " + ", ".join(self.options)
+        bounds = []
+        if self.low > -math.inf:
+            bounds.append(("above " if self.low_open else "at least ") + self.text(self.low))
+        if self.high < math.inf:
+            bounds.append(("below " if self.high_open else "at most ") + self.text(self.high))
+        return " and ".join(bounds)
+
+    def text(self, value: float) -> str:
+        return f"{value:.0f}" if self.kind == "count" else show(value, self.display or self.unit)
+
+    def contains(self, value: float) -> bool:
+        """Whether an SI value is in range; NaN is in no range."""
+        above = value > self.low if self.low_open else value >= self.low
+        below = value < self.high if self.high_open else value <= self.high
+        return above and below
+
+
+def declare(declared: Declared) -> Any:
+    """An attrs field that reads, checks and describes itself by `declared`."""
+
+    def convert(value: Any, instance: Any, attribute: Any) -> Any:
+        if value is None and (declared.optional or declared.default is None):
+            return None
+        return declared.read(value, f"{instance.__spec_path__}.{attribute.name}", declared)
+
+    converter: Any = attrs.Converter(convert, takes_self=True, takes_field=True)
+    return attrs.field(default=declared.default, converter=converter, metadata={"declared": declared})
+
+
+def evolved(value: T, **changes: Any) -> T:
+    """A copy of a spec object with some fields given anew, read and checked like any other."""
+    copy: T = attrs.evolve(value, **changes)  # type: ignore[misc]  # made by attrs inside `spec`
+    return copy
+
+
+def describe(cls: type) -> tuple[Declared, ...]:
+    """The declared fields of a spec class, in order, each with its name."""
+    found = ((field.name, field.metadata.get("declared")) for field in attrs.fields(cls))
+    return tuple(attrs.evolve(declared, name=name) for name, declared in found if declared is not None)
+
+
+def walk(value: Any, prefix: str = "") -> Iterator[tuple[str, Declared, Any]]:
+    """(dotted name, declaration, value) of every number, word and list in a spec object; parts are entered."""
+    for declared in describe(type(value)):
+        item = getattr(value, declared.name)
+        if declared.kind == "part" and item is not None:
+            yield from walk(item, f"{prefix}{declared.name}.")
+        elif declared.stored:
+            yield prefix + declared.name, declared, item
+
+
+def as_call(self: Any) -> str:
+    """A spec object as the call that makes it, in display units; fields that hold nothing are left out."""
+    parts = []
+    for declared in describe(type(self)):
+        value = getattr(self, declared.name)
+        if declared.kind == "quantity" and isinstance(value, float) and declared.unit != "1":
+            value = show(value, declared.display or declared.unit, digits=12)
+        elif isinstance(value, StrEnum):
+            value = str(value)
+        if declared.stored and value is not None and value != ():
+            parts.append(f"{declared.name}={value!r}")
+    return f"{type(self).__name__}({', '.join(parts)})"

@@ -1,0 +1,68 @@
+"""`SpecError`: the one error for what a user says, in one line that names the field and what to do."""
+
+from __future__ import annotations
+
+import reprlib
+from collections.abc import Iterable
+
+__all__ = ["MISSING", "SpecError", "near", "nearest"]
+
+
+class _Missing:
+    """Stands for a value that was not given, because None is a value."""
+
+    def __repr__(self) -> str:
+        return "<missing>"
+
+    def __reduce__(self) -> str:
+        return "MISSING"  # there is only one, also after unpickling
+
+
+MISSING = _Missing()
+
+
+class SpecError(ValueError):
+    """Invalid input.
+
+    field: dotted name ("braid.angle", "test.pressure"); value: what was given (MISSING if nothing);
+    allowed: what is permitted or what is wrong, as a phrase; advice: what to do, may be empty.
+    The message is one line: `braid.angle = 95 deg: must be above 0 deg and below 90 deg; <advice>`.
+    """
+
+    def __init__(self, field: str, value: object = MISSING, allowed: str = "", advice: str = "") -> None:
+        self.field, self.value, self.allowed, self.advice = field, value, allowed, advice
+        given = "" if value is MISSING else f" = {_shown(value)}"
+        said = "; ".join(part for part in (allowed, advice) if part)
+        super().__init__(_one_line(f"{field}{given}: {said}" if said else f"{field}{given}"))
+
+    def renamed(self, field: str) -> SpecError:
+        """The same error under another field name, as where a file calls `isometric.length` `test.length`."""
+        return SpecError(field, self.value, self.allowed, self.advice)
+
+    def __reduce__(self) -> tuple[type[SpecError], tuple[object, ...]]:
+        return SpecError, (self.field, self.value, self.allowed, self.advice)
+
+
+def _one_line(text: str) -> str:
+    return " ".join(text.split())
+
+
+def _shown(value: object) -> str:
+    if isinstance(value, str):
+        line = _one_line(value)
+        return (line if len(line) <= 60 else line[:57] + "...") or '""'
+    return _one_line(reprlib.repr(value))
+
+
+def near(word: str, options: Iterable[str]) -> str:
+    """Advice for a misspelt name: `did you mean "braid"?`, or empty when nothing is near."""
+    from rapidfuzz import process  # only when something is misspelt
+
+    match = process.extractOne(word[:100], list(options), score_cutoff=60)
+    return "" if match is None else f'did you mean "{match[0]}"?'
+
+
+def nearest(word: str, options: Iterable[str]) -> str:
+    """Like `near`, but lists the options when nothing is near."""
+    known = list(options)
+    return near(word, known) or "choose from " + ", ".join(known)

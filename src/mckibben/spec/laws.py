@@ -1,0 +1,167 @@
+"""Constants of the hyperelastic laws of the chamber. The energies themselves are in `model/chamber.py`.
+
+Energies are per unit reference volume [Pa] of an incompressible material with principal stretches l1, l2, l3;
+I1, I2 are the usual invariants. Single constants may be zero or negative; the initial shear modulus must be positive.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Mapping
+from typing import Any, ClassVar
+
+from mckibben.spec.declared import Declared, Reads, declare
+from mckibben.spec.errors import SpecError
+from mckibben.spec.fields import quantities, quantity, spec
+from mckibben.units import Number, UnitError, is_traced, show, to_si
+
+__all__ = ["LAWS", "Constants", "CustomLaw", "Gent", "Law", "MooneyRivlin", "NeoHookean", "Ogden", "Yeoh"]
+
+
+def _check_modulus(field: str, modulus: Number, formula: str) -> None:
+    """Raise unless the initial shear modulus is positive; traced numbers cannot be judged."""
+    if not is_traced(modulus) and not modulus > 0.0:
+        said = f"the initial shear modulus {formula} is {show(modulus, 'kPa')}: it must be above 0 kPa"
+        raise SpecError(f"chamber.law.{field}", allowed=said)
+
+
+@spec("chamber.law")
+class MooneyRivlin:
+    """Mooney-Rivlin: c1 (I1 - 3) + c2 (I2 - 3); initial shear modulus 2 (c1 + c2)."""
+
+    name: ClassVar[str] = "mooney-rivlin"
+    c1: Reads[float] = quantity("Pa", display="kPa", meaning="factor of I1 - 3", source="Eqs. (20-28)")
+    c2: Reads[float] = quantity("Pa", display="kPa", meaning="factor of I2 - 3", source="Eqs. (20-28)", default=0.0)
+
+    def __attrs_post_init__(self) -> None:
+        _check_modulus("c1", self.shear_modulus, "2 (c1 + c2)")
+
+    @property
+    def shear_modulus(self) -> Number:
+        return 2.0 * (self.c1 + self.c2)
+
+
+@spec("chamber.law")
+class NeoHookean:
+    """Neo-Hookean: c1 (I1 - 3); initial shear modulus 2 c1."""
+
+    name: ClassVar[str] = "neo-hookean"
+    c1: Reads[float] = quantity("Pa", display="kPa", meaning="factor of I1 - 3", low=0.0, low_open=True)
+
+    @property
+    def shear_modulus(self) -> Number:
+        return 2.0 * self.c1
+
+
+@spec("chamber.law")
+class Yeoh:
+    """Yeoh: c1 (I1 - 3) + c2 (I1 - 3)^2 + c3 (I1 - 3)^3; initial shear modulus 2 c1."""
+
+    name: ClassVar[str] = "yeoh"
+    c1: Reads[float] = quantity("Pa", display="kPa", meaning="factor of I1 - 3", low=0.0, low_open=True)
+    c2: Reads[float] = quantity("Pa", display="kPa", meaning="factor of (I1 - 3)^2", default=0.0)
+    c3: Reads[float] = quantity("Pa", display="kPa", meaning="factor of (I1 - 3)^3", default=0.0)
+
+    @property
+    def shear_modulus(self) -> Number:
+        return 2.0 * self.c1
+
+
+@spec("chamber.law")
+class Ogden:
+    """Ogden: sum of mu_i/alpha_i (l1^a + l2^a + l3^a - 3), a = alpha_i; initial shear modulus sum(mu_i alpha_i)/2."""
+
+    name: ClassVar[str] = "ogden"
+    mu: Reads[tuple[float, ...]] = quantities("Pa", display="kPa", meaning="moduli mu_i")
+    alpha: Reads[tuple[float, ...]] = quantities("1", meaning="exponents alpha_i, none zero")
+
+    def __attrs_post_init__(self) -> None:
+        if len(self.mu) != len(self.alpha):
+            said = f"must have as many numbers as mu ({len(self.mu)})"
+            raise SpecError("chamber.law.alpha", self.alpha, said)
+        for index, alpha in enumerate(self.alpha):
+            if not is_traced(alpha) and alpha == 0.0:
+                raise SpecError(f"chamber.law.alpha[{index}]", alpha, "must not be 0")
+        _check_modulus("mu", self.shear_modulus, "sum(mu_i alpha_i)/2")
+
+    @property
+    def shear_modulus(self) -> Number:
+        return 0.5 * sum(mu * alpha for mu, alpha in zip(self.mu, self.alpha, strict=True))
+
+
+@spec("chamber.law")
+class Gent:
+    """Gent: -mu Jm/2 ln(1 - (I1 - 3)/Jm), defined while I1 - 3 < Jm; initial shear modulus mu."""
+
+    name: ClassVar[str] = "gent"
+    mu: Reads[float] = quantity("Pa", display="kPa", meaning="initial shear modulus", low=0.0, low_open=True)
+    Jm: Reads[float] = quantity("1", meaning="limit of I1 - 3, chains stretched out", low=0.0, low_open=True)
+
+    @property
+    def shear_modulus(self) -> Number:
+        return self.mu
+
+
+class Constants(Mapping[str, Number]):
+    """Named SI numbers that cannot change and compare by value, as a spec must."""
+
+    __slots__ = ("_items",)
+
+    def __init__(self, items: Mapping[str, Number]) -> None:
+        self._items = dict(items)
+
+    def __getitem__(self, key: str) -> Number:
+        return self._items[key]
+
+    def __iter__(self) -> Iterator[str]:
+        return iter(self._items)
+
+    def __len__(self) -> int:
+        return len(self._items)
+
+    def __hash__(self) -> int:
+        return hash(frozenset(self._items.items()))
+
+    def __repr__(self) -> str:
+        return repr(self._items)
+
+
+def _read_constants(value: Any, field: str, declared: Declared) -> Constants:
+    if not isinstance(value, Mapping):
+        raise SpecError(field, value, "must be a mapping from name to number", 'write constants={"a": 1.0}')
+    read = {}
+    for key, item in value.items():
+        if not isinstance(key, str):
+            raise SpecError(field, key, "must have text as names")
+        try:
+            # The unit of a user's own constant is not known here, so only bare SI numbers make sense.
+            read[key] = to_si(item, "1")
+        except UnitError as error:
+            raise SpecError(f"{field}.{key}", item, str(error), "constants of a custom law are SI numbers") from error
+    return Constants(read)
+
+
+def _read_function(value: Any, field: str, declared: Declared) -> Any:
+    if callable(value):
+        return value
+    raise SpecError(field, value, "must be a function of (l1, l2, l3, constants)", "it gives the energy density in Pa")
+
+
+@spec("chamber.law")
+class CustomLaw:
+    """A law of the user's own: function(l1, l2, l3, constants) -> energy density [Pa], written with jax.numpy.
+
+    It must be zero and stationary at l1 = l2 = l3 = 1 (on incompressible states). It cannot be written to a file.
+    """
+
+    name: ClassVar[str] = "custom"
+    function: Callable[..., Any] = declare(
+        Declared(kind="function", read=_read_function, meaning="energy density [Pa] of (l1, l2, l3, constants)")
+    )
+    constants: Reads[Constants] = declare(
+        Declared(kind="constants", read=_read_constants, meaning="named SI numbers handed to the function", default={})
+    )
+
+
+Law = MooneyRivlin | NeoHookean | Yeoh | Ogden | Gent | CustomLaw
+LAWS: dict[str, type] = {law.name: law for law in (MooneyRivlin, NeoHookean, Yeoh, Ogden, Gent, CustomLaw)}
+"""The laws by their name in files."""

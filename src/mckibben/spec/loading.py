@@ -1,0 +1,229 @@
+"""What a lab holds and varies in a test.
+
+A `Step` controls two quantities, each along a `Path`; a test is one step or several.
+Signs: force > 0 pulls the fittings together; pressure is gauge.
+"""
+
+from __future__ import annotations
+
+from typing import Any, ClassVar
+
+import attrs
+
+from mckibben.spec.declared import Declared, Reads, declare
+from mckibben.spec.errors import SpecError
+from mckibben.spec.fields import count, spec
+from mckibben.spec.muscle import Muscle
+from mckibben.spec.path import Path, PathMode
+from mckibben.units import DISPLAY, UnitError, is_traced
+
+__all__ = [
+    "TESTS",
+    "BlockedForce",
+    "FreeContraction",
+    "Isobaric",
+    "Isometric",
+    "Isotonic",
+    "Protocol",
+    "Step",
+    "Test",
+]
+
+ATMOSPHERE = 101325.0
+"""Standard atmosphere [Pa]: no gauge pressure is below minus this."""
+
+
+def _read_path(value: Any, field: str, declared: Declared) -> Path:
+    try:
+        path = Path.parse(value, declared.unit)
+    except UnitError as error:
+        raise SpecError(field, value, str(error), error.advice) from error
+    for waypoint in path.waypoints:
+        if not is_traced(waypoint) and not declared.contains(waypoint):
+            raise SpecError(field, value, f"must be {declared.allowed}", declared.advice)
+    if declared.kind == "held" and path.mode != PathMode.CONSTANT:
+        raise SpecError(field, value, "must be one value", f"this test holds its {field.rpartition('.')[2]}")
+    return path
+
+
+_QUANTITIES: dict[str, dict[str, Any]] = {
+    "length": {"unit": "m", "meaning": "distance between the fittings", "low": 0.0, "low_open": True},
+    "force": {"unit": "N", "meaning": "axial force, > 0 where the muscle pulls its fittings together"},
+    "pressure": {"unit": "Pa", "meaning": "gauge pressure", "low": -ATMOSPHERE, "advice": "pressure is gauge"},
+    "volume": {"unit": "m^3", "meaning": "volume inside the braid", "low": 0.0, "low_open": True},
+}
+
+
+def controlled(name: str, *, held: bool = False, default: Any = attrs.NOTHING) -> Any:
+    """A field for one of the controlled quantities; with `held` only a constant will do."""
+    display = DISPLAY.get(_QUANTITIES[name]["unit"], "")
+    kind = "held" if held else "path"
+    return declare(Declared(kind=kind, read=_read_path, default=default, display=display, **_QUANTITIES[name]))
+
+
+DEFAULT_POINTS = 21
+
+
+def points_field() -> Any:
+    return count(
+        meaning=f"number of states; by default {DEFAULT_POINTS} on a ramp, the length of a list, 1 if nothing varies",
+        low=1, high=100_000, default=None,
+    )  # fmt: skip
+
+
+def _settle_points(test: Any) -> None:
+    """Fill in the default number of points and check a given one against the paths."""
+    names = [name for name in _QUANTITIES if getattr(test, name, None) is not None]
+    paths = {name: getattr(test, name) for name in names}
+    lists = {name: len(path.waypoints) for name, path in paths.items() if path.mode == PathMode.LIST}
+    field = f"{test.__spec_path__}.points"
+    if len(set(lists.values())) > 1:
+        said = " and ".join(f"{name} lists {number} values" for name, number in lists.items())
+        raise SpecError(test.__spec_path__, allowed=said, advice="give as many of each")
+    fewest = max((path.fewest_points for path in paths.values()), default=1)
+    points = test.points
+    if points is None:
+        varies = any(path.varies for path in paths.values())
+        points = next(iter(lists.values()), max(DEFAULT_POINTS, fewest) if varies else 1)
+    for name, number in lists.items():
+        if points != number:
+            raise SpecError(field, points, f"must be {number}, as many as {name} lists", "or leave points out")
+    if points < fewest:
+        raise SpecError(field, points, f"must be at least {fewest}, to visit every value named")
+    object.__setattr__(test, "points", points)
+
+
+@spec("step")
+class Step:
+    """Part of a test with any two of length, force, pressure and volume controlled."""
+
+    kind: ClassVar[str] = "step"
+    length: Reads[Path | None] = controlled("length", default=None)
+    force: Reads[Path | None] = controlled("force", default=None)
+    pressure: Reads[Path | None] = controlled("pressure", default=None)
+    volume: Reads[Path | None] = controlled("volume", default=None)
+    points: Reads[int] = points_field()
+
+    def __attrs_post_init__(self) -> None:
+        given = self.controls
+        if len(given) != 2:
+            said = f"{' and '.join(given) or 'nothing'} given"
+            raise SpecError("step", allowed=said, advice=f"control exactly two of {', '.join(_QUANTITIES)}")
+        _settle_points(self)
+
+    @property
+    def controls(self) -> tuple[str, ...]:
+        """The names of the two controlled quantities."""
+        return tuple(name for name in _QUANTITIES if getattr(self, name) is not None)
+
+    def as_steps(self, muscle: Muscle) -> tuple[Step, ...]:
+        return (self,)
+
+
+@spec("isometric")
+class Isometric:
+    """Length held, pressure varied."""
+
+    kind: ClassVar[str] = "isometric"
+    length: Reads[Path] = controlled("length", held=True)
+    pressure: Reads[Path] = controlled("pressure")
+    points: Reads[int] = points_field()
+
+    def __attrs_post_init__(self) -> None:
+        _settle_points(self)
+
+    def as_steps(self, muscle: Muscle) -> tuple[Step, ...]:
+        return (Step(length=self.length, pressure=self.pressure, points=self.points),)
+
+
+@spec("isobaric")
+class Isobaric:
+    """Pressure held, length varied."""
+
+    kind: ClassVar[str] = "isobaric"
+    pressure: Reads[Path] = controlled("pressure", held=True)
+    length: Reads[Path] = controlled("length")
+    points: Reads[int] = points_field()
+
+    def __attrs_post_init__(self) -> None:
+        _settle_points(self)
+
+    def as_steps(self, muscle: Muscle) -> tuple[Step, ...]:
+        return (Step(length=self.length, pressure=self.pressure, points=self.points),)
+
+
+@spec("isotonic")
+class Isotonic:
+    """Force held (a hanging weight), pressure varied."""
+
+    kind: ClassVar[str] = "isotonic"
+    force: Reads[Path] = controlled("force", held=True)
+    pressure: Reads[Path] = controlled("pressure")
+    points: Reads[int] = points_field()
+
+    def __attrs_post_init__(self) -> None:
+        _settle_points(self)
+
+    def as_steps(self, muscle: Muscle) -> tuple[Step, ...]:
+        return (Step(force=self.force, pressure=self.pressure, points=self.points),)
+
+
+@spec("blocked-force")
+class BlockedForce:
+    """Length held at the braid's own (or another), pressure varied: the most the muscle can pull."""
+
+    kind: ClassVar[str] = "blocked-force"
+    pressure: Reads[Path] = controlled("pressure")
+    length: Reads[Path | None] = controlled("length", held=True, default=None)
+    points: Reads[int] = points_field()
+
+    def __attrs_post_init__(self) -> None:
+        _settle_points(self)
+
+    def as_steps(self, muscle: Muscle) -> tuple[Step, ...]:
+        length = muscle.braid.length if self.length is None else self.length
+        return (Step(length=length, pressure=self.pressure, points=self.points),)
+
+
+@spec("free-contraction")
+class FreeContraction:
+    """No force, pressure varied: how far the muscle shortens by itself."""
+
+    kind: ClassVar[str] = "free-contraction"
+    pressure: Reads[Path] = controlled("pressure")
+    points: Reads[int] = points_field()
+
+    def __attrs_post_init__(self) -> None:
+        _settle_points(self)
+
+    def as_steps(self, muscle: Muscle) -> tuple[Step, ...]:
+        return (Step(force=0.0, pressure=self.pressure, points=self.points),)
+
+
+def _read_steps(value: Any, field: str, declared: Declared) -> tuple[Step, ...]:
+    if not isinstance(value, (list, tuple)) or not value:
+        raise SpecError(field, value, "must be a list of one or more Step")
+    for index, item in enumerate(value):
+        if not isinstance(item, Step):
+            raise SpecError(f"{field}[{index}]", item, "must be a Step")
+    return tuple(value)
+
+
+@spec("protocol")
+class Protocol:
+    """Several steps one after another, each starting where the last one ended."""
+
+    kind: ClassVar[str] = "protocol"
+    steps: Reads[tuple[Step, ...]] = declare(
+        Declared(kind="steps", read=_read_steps, meaning="the steps, in order", parts=(Step,))
+    )
+
+    def as_steps(self, muscle: Muscle) -> tuple[Step, ...]:
+        return self.steps
+
+
+Test = Isometric | Isobaric | Isotonic | BlockedForce | FreeContraction | Protocol | Step
+TESTS: dict[str, type] = {
+    test.kind: test for test in (Isometric, Isobaric, Isotonic, BlockedForce, FreeContraction, Protocol, Step)
+}
+"""The tests by their kind in files."""

@@ -1,0 +1,110 @@
+"""Changing a case's mapping before it is read: keys merged over a preset, `--set` overrides.
+
+Here everything is still plain TOML values; whether they make sense is for `spec/text.py` to say.
+"""
+
+from __future__ import annotations
+
+import copy
+import tomllib
+from collections.abc import Iterable, Mapping
+from typing import Any
+
+from mckibben.spec.errors import SpecError
+
+__all__ = ["apply_overrides", "merged"]
+
+
+def merged(base: Mapping[Any, Any], over: Mapping[Any, Any]) -> dict[Any, Any]:
+    """The table of a muscle with the keys of `over` on top of those of `base`; what was overridden is not assumed.
+
+    A law of another name replaces the law, and stiffnesses (B1, B2, B3) replace a fibre's E and nu or the other way
+    round: the keys of two kinds of law or fibre do not mix.
+    """
+    touched: list[str] = []
+    result = _merged(base, over, "", touched)
+    if "assumed" not in over:
+        left = [name for name in base.get("assumed", ()) if not any(_within(name, path) for path in touched)]
+        result["assumed"] = left
+    return result
+
+
+def _within(name: str, path: str) -> bool:
+    return name == path or name.startswith(path + ".")
+
+
+def _merged(base: Mapping[Any, Any], over: Mapping[Any, Any], prefix: str, touched: list[str]) -> dict[Any, Any]:
+    result = dict(base)
+    for key in _left_behind(prefix, over):
+        result.pop(key, None)
+        touched.append(prefix + key)
+    if "angle_from" in over and "angle" not in over:
+        raise SpecError("braid.angle_from", over["angle_from"], "is given without an angle", "give the angle with it")
+    for key, value in over.items():
+        path = f"{prefix}{key}"
+        inner = base.get(key)
+        other_law = path == "chamber.law" and isinstance(value, Mapping) and "name" in value
+        if other_law and isinstance(inner, Mapping) and value["name"] != inner.get("name"):
+            inner = None
+        if isinstance(inner, Mapping) and isinstance(value, Mapping):
+            result[key] = _merged(inner, value, f"{path}.", touched)
+        else:
+            result[key] = value
+            touched.append(path)
+    return result
+
+
+def _left_behind(prefix: str, over: Mapping[Any, Any]) -> tuple[str, ...]:
+    """Keys of the base that have no meaning beside those of `over`."""
+    if prefix != "braid.fibre.":
+        return ()
+    if any(name in over for name in ("B1", "B2", "B3")):
+        return () if "E" in over or "nu" in over else ("E", "nu")
+    return ("B1", "B2", "B3") if "E" in over or "nu" in over else ()
+
+
+def apply_overrides(mapping: Mapping[Any, Any], overrides: Iterable[str]) -> dict[Any, Any]:
+    """A case mapping with "dotted.name=value" texts put in: "braid.angle=36 deg", "test.pressure=0 to 2 bar".
+
+    Names begin with "muscle." or "test."; without either they are the muscle's. A value that is a TOML value (56, 0.4,
+    true, [1, 2]) is taken as such, anything else as text. SpecError for a text without "=" or a name inside a value.
+    """
+    if not isinstance(mapping, Mapping):
+        raise SpecError("case file", mapping, "must be a table")
+    result = copy.deepcopy(dict(mapping))
+    for text in overrides:
+        name, equals, value = str(text).partition("=")
+        keys = [key.strip() for key in name.split(".")]
+        if not equals or not all(keys):
+            raise SpecError("override", text, "must be name=value", 'write it like "braid.angle=36 deg"')
+        if keys[0] not in ("muscle", "test"):
+            keys = ["muscle", *keys]
+        if len(keys) == 1:
+            raise SpecError("override", text, f"must name a field of the {keys[0]}", 'such as "braid.angle=36 deg"')
+        _put(result, keys, _toml_value(value.strip()), ".".join(keys))
+    return result
+
+
+def _toml_value(text: str) -> Any:
+    try:
+        read = tomllib.loads(f"value = {text}")
+    except (tomllib.TOMLDecodeError, RecursionError):
+        return text
+    return read["value"] if len(read) == 1 else text  # a line break would have let in more keys
+
+
+def _put(table: Any, keys: list[str], value: Any, name: str) -> None:
+    key: Any = keys[0]
+    if isinstance(table, list):
+        if not key.isdecimal() or len(key) > 6 or int(key) >= len(table):
+            advice = f"entries are 0 to {len(table) - 1}"
+            raise SpecError(name, allowed=f'"{key}" is no entry of the list', advice=advice)
+        key = int(key)
+    elif not isinstance(table, dict):
+        raise SpecError(name, allowed=f'there is no "{key}" inside a value', advice="override the value as a whole")
+    if len(keys) == 1:
+        table[key] = value
+        return
+    if isinstance(table, dict):
+        table.setdefault(key, {})
+    _put(table[key], keys[1:], value, name)

@@ -1,0 +1,178 @@
+"""Text or pint quantity <-> SI float, and how numbers are shown. Nobody else knows units.
+
+Inside the package every number is SI (m, N, Pa, rad, m^3, N m^2). A bare number is taken as SI; text needs its
+unit ("12.5 mm"), except a plain zero. Units are looked up in one cached pint registry, imported on first use.
+"""
+
+from __future__ import annotations
+
+import math
+import re
+from decimal import Decimal
+from functools import lru_cache
+from numbers import Real
+from typing import Any, TypeAlias
+
+import numpy as np
+
+__all__ = ["DISPLAY", "Number", "Quantity", "UnitError", "from_si", "is_traced", "show", "split", "to_si"]
+
+Quantity: TypeAlias = Any
+"""What a user may give as a number: an SI float, text with a unit, or a pint quantity."""
+
+Number: TypeAlias = Any
+"""An SI float, or the JAX tracer that stands for one while something is differentiated."""
+
+DISPLAY = {"m": "mm", "Pa": "bar", "rad": "deg", "m^3": "mL", "N m^2": "N mm^2", "J": "mJ"}
+"""The unit each SI unit is shown in, where it is not itself."""
+
+_NUMBER = re.compile(r"([+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?)\s*(.*)", re.DOTALL)
+# Only names, one-digit powers and separators reach pint, whose own reader would evaluate any arithmetic ("9**9**9").
+_WORD = r"[A-Za-zµμ]+(?: ?(?:\^|\*\*) ?-?\d)?"
+_UNIT = re.compile(rf"{_WORD}(?:(?: ?[*/] ?| ){_WORD})*")
+
+
+class UnitError(ValueError):
+    """A value that is no number of the wanted unit; the message says what is wrong and `advice` what to write."""
+
+    def __init__(self, problem: str, advice: str = "") -> None:
+        super().__init__(problem)
+        self.advice = advice
+
+
+def is_traced(value: object) -> bool:
+    """True for JAX arrays and tracers: they pass through untouched, being SI numbers already."""
+    return hasattr(value, "aval")
+
+
+@lru_cache(maxsize=1)
+def _registry() -> Any:
+    import pint  # here, because importing pint takes as long as everything else together
+
+    return pint.UnitRegistry()
+
+
+@lru_cache(maxsize=512)
+def _factor(unit: str, wanted: str) -> float:
+    """Factor from `unit` to the SI unit `wanted`; UnitError when unknown or of another kind."""
+    clean = unit.replace("°", "deg").replace("·", " ").replace("²", "^2").replace("³", "^3").replace("⁴", "^4")
+    clean = re.sub(r"\s+", " ", clean).strip()
+    example = f"write a unit of the same kind as {DISPLAY.get(wanted, wanted)}"
+    if wanted == "1":
+        if clean in ("", "dimensionless"):
+            return 1.0
+        raise UnitError("must be a plain number without a unit", f'leave out "{unit}"')
+    if not _UNIT.fullmatch(clean):
+        raise UnitError(f'has an unreadable unit "{_short(unit)}"', example)
+    registry = _registry()
+    try:
+        scale, kind = registry.get_root_units(registry.parse_units(clean))
+        wanted_scale, wanted_kind = registry.get_root_units(registry.parse_units(wanted))
+    except Exception as error:  # pint raises many kinds for unknown, offset and malformed units
+        raise UnitError(f'has an unknown unit "{_short(unit)}"', example) from error
+    # Root units and not dimensions are compared: to pint an angle and a percentage have the same dimension.
+    if kind != wanted_kind:
+        raise UnitError(f'has the wrong kind of unit, "{_short(unit)}"', example)
+    factor = float(scale) / float(wanted_scale)
+    tidy = float(f"{factor:.10g}")  # decimal prefixes: 1e-6, not 9.999999999999999e-07
+    return tidy if math.isclose(tidy, factor, rel_tol=1e-14) else factor
+
+
+def _short(text: object, width: int = 40) -> str:
+    line = " ".join(str(text).split())
+    return line if len(line) <= width else line[: width - 3] + "..."
+
+
+def _scaled(number: str, factor: float) -> float:
+    """number * factor, correctly rounded for decimal factors so that "12.5 mm" is exactly 0.0125."""
+    digits = repr(factor)
+    if len(digits) <= 8:
+        return float(Decimal(number) * Decimal(digits))
+    return float(number) * factor
+
+
+def _finite(value: float) -> float:
+    if not math.isfinite(value):
+        raise UnitError("must be a finite number")
+    return value
+
+
+def to_si(value: Quantity, unit: str) -> Number:
+    """`value` as a float in the SI unit `unit` ("m", "N", "Pa", "rad", "m^3", "N m^2", "1").
+
+    Numbers are taken as SI; text and pint quantities are converted. JAX arrays and tracers come back untouched.
+    Raises UnitError for a wrong or missing unit, for true/false, NaN, infinity and anything that is no number.
+    """
+    if is_traced(value):
+        return value
+    if isinstance(value, str):
+        return _from_text(value, unit)
+    if hasattr(value, "magnitude") and hasattr(value, "units"):
+        units = format(value.units, "D")
+        return _finite(_scaled(repr(to_si(value.magnitude, "1")), _factor(units, unit)))
+    if isinstance(value, np.ndarray) and value.ndim == 0:
+        value = value.item()
+    if isinstance(value, (bool, np.bool_)) or not isinstance(value, (Real, Decimal)):
+        raise UnitError("must be a number", _example(unit))
+    try:
+        return _finite(float(value))
+    except (OverflowError, ValueError) as error:
+        raise UnitError("must be a finite number") from error
+
+
+def split(text: str) -> tuple[str, str] | None:
+    """The number and the unit (maybe empty) of a text, unread; None if it does not begin with a number."""
+    found = _NUMBER.fullmatch(text.strip())
+    return None if found is None else (found.group(1), found.group(2))
+
+
+def _from_text(text: str, unit: str) -> float:
+    found = split(text)
+    if found is None:
+        raise UnitError("must be a number", _example(unit))
+    number, written = found
+    try:
+        plain = float(number)
+        if not written and unit != "1":
+            if plain == 0.0:
+                return 0.0
+            raise UnitError("needs a unit", _example(unit))
+        return _finite(_scaled(number, _factor(written, unit)))
+    except (OverflowError, ArithmeticError) as error:
+        raise UnitError("must be a finite number") from error
+
+
+def _example(unit: str) -> str:
+    examples = {"m": '"12.5 mm"', "Pa": '"1 bar"', "rad": '"37 deg"', "N": '"20 N"', "m^3": '"40 mL"'}
+    examples |= {"N m^2": '"0.5 N mm^2"', "1": "0.4"}
+    return "write it like " + examples.get(unit, f'"1 {unit}"')
+
+
+def from_si(value: Any, unit: str) -> Any:
+    """An SI number or array in `unit`: from_si(0.0125, "mm") is 12.5."""
+    return value if unit == "1" else value / _factor(unit, _si_of(unit))
+
+
+@lru_cache(maxsize=128)
+def _si_of(unit: str) -> str:
+    """The package's SI unit for the kind of `unit`."""
+    for candidate in ("m", "N", "Pa", "rad", "m^3", "N m^2", "J", "J/m", "1/m", "m^2", "N/m"):
+        try:
+            _factor(unit, candidate)
+        except UnitError:
+            continue
+        return candidate
+    raise UnitError(f'unknown unit "{_short(unit)}"')
+
+
+def show(value: Any, unit: str, digits: int = 6) -> str:
+    """An SI number as text for people: show(0.0125, "m") is "12.5 mm", show(3e9, "GPa") is "3 GPa".
+
+    `unit` is the SI unit, shown as DISPLAY says, or the unit to show directly. The text reads back with `to_si`.
+    """
+    if is_traced(value):
+        return repr(value)
+    shown = DISPLAY.get(unit, unit)
+    number = float(from_si(value, shown))
+    text = f"{number + 0.0:.{digits}g}"
+    return text if shown == "1" else f"{text} {shown}"

@@ -1,0 +1,32 @@
+"""How every test runs: on the CPU, in strict 64-bit arithmetic, with run-time type checks, nothing random, no windows.
+
+The environment is set before anything imports JAX or the package, which is why this happens on import.
+"""
+
+import os
+from pathlib import Path
+
+CACHE = Path(__file__).parent.parent / ".pytest_cache" / "jax"
+
+os.environ["JAX_PLATFORMS"] = "cpu"
+os.environ["JAX_NUMPY_DTYPE_PROMOTION"] = "strict"
+os.environ["MPLBACKEND"] = "Agg"
+# Compiled functions are kept between runs. One folder for each xdist worker: JAX does not write the files atomically,
+# so a worker could read another's half-written one.
+os.environ.setdefault("JAX_COMPILATION_CACHE_DIR", str(CACHE / os.environ.get("PYTEST_XDIST_WORKER", "main")))
+os.environ.setdefault("JAX_PERSISTENT_CACHE_MIN_COMPILE_TIME_SECS", "0.2")
+
+from beartype import BeartypeConf, beartype
+from hypothesis import HealthCheck, settings
+from jaxtyping import install_import_hook
+
+# Checks every annotated argument and result of the package at run time. An int is a float, as for every type checker.
+# The hook finds the checker by its dotted name, in this module.
+checked = beartype(conf=BeartypeConf(is_pep484_tower=True))
+install_import_hook("mckibben", f"{__name__}.checked")
+
+# The same examples on every machine and every run; no deadline, because the first example may compile.
+settings.register_profile(
+    "mckibben", derandomize=True, deadline=None, database=None, suppress_health_check=[HealthCheck.too_slow]
+)
+settings.load_profile("mckibben")

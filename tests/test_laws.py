@@ -1,0 +1,177 @@
+"""The chamber's laws: rest, linear limit, stress in three homogeneous tests, and what they have in common."""
+
+import math
+from collections.abc import Callable
+
+import jax
+import jax.numpy as jnp
+import numpy as np
+import pytest
+
+from mckibben import spec
+from mckibben.model.chamber import LAWS, chamber_density, law_of
+from mckibben.model.parameters import constants, parameters
+
+STRETCHES = np.linspace(0.6, 2.5, 39)
+
+# How a material is stretched: three principal stretches of one stretch x, with product 1.
+LOADS: dict[str, Callable[[jax.Array], tuple[jax.Array, jax.Array, jax.Array]]] = {
+    "uniaxial": lambda x: (x, x**-0.5, x**-0.5),
+    "equibiaxial": lambda x: (x, x, x**-2),
+    "pure shear": lambda x: (x, jnp.ones_like(x), 1.0 / x),
+}
+DRIVEN = {"uniaxial": 1, "equibiaxial": 2, "pure shear": 1}
+"""How many of the stretches are driven: the work of a unit of x is that many times the stress."""
+
+CASES = [
+    spec.MooneyRivlin(c1=50e3, c2=12e3),
+    spec.MooneyRivlin(c1=50e3, c2=-7e3),
+    spec.NeoHookean(c1=80e3),
+    spec.Yeoh(c1=60e3, c2=-2e3, c3=300.0),
+    spec.Ogden(mu=(130e3, 9e3, -15e3), alpha=(1.3, 5.0, -2.0)),
+    spec.Gent(mu=90e3, Jm=12.0),
+]
+cases = pytest.mark.parametrize("law", CASES, ids=lambda law: law.name)
+loads = pytest.mark.parametrize("load", LOADS)
+
+
+def made_of(law: spec.Law) -> spec.Muscle:
+    braid = spec.Braid(
+        radius=12.5e-3, length=85e-3, angle=0.65, fibres=56, fibre=spec.Fibre(diameter=0.25e-3, E=3e9, nu=0.4)
+    )
+    return spec.Muscle(braid=braid, chamber=spec.Chamber(thickness=1e-3, law=law))
+
+
+def energy(law: spec.Law, load: str) -> Callable[[jax.Array], jax.Array]:
+    """Energy density [Pa] as the muscle's chamber computes it, of the stretch in a test."""
+    function, numbers = law_of(made_of(law)), jax.tree.map(lambda x: jnp.asarray(x, float), constants(law))
+    return lambda x: function(*LOADS[load](x), numbers)
+
+
+def stress(law: spec.Law, load: str, stretch: np.ndarray = STRETCHES) -> np.ndarray:
+    """Nominal stress [Pa] by automatic differentiation of the law."""
+    return np.asarray(jax.vmap(jax.grad(energy(law, load)))(stretch)) / DRIVEN[load]
+
+
+def written_by_hand(law: spec.Law, load: str) -> np.ndarray:
+    """Nominal stress [Pa] as textbooks write it, with W1 and W2 the derivatives by I1 and I2; W2 = 0 but for Mooney."""
+    x = STRETCHES
+    if isinstance(law, spec.Ogden):
+        power = {"uniaxial": -0.5, "equibiaxial": -2.0, "pure shear": -1.0}[load]
+        return sum(mu * (x ** (a - 1.0) - x ** (power * a - 1.0)) for mu, a in zip(law.mu, law.alpha, strict=True))
+    first = {"uniaxial": x**2 + 2.0 / x, "equibiaxial": 2.0 * x**2 + x**-4, "pure shear": x**2 + x**-2 + 1.0}[load] - 3
+    match law:
+        case spec.MooneyRivlin():
+            w1, w2 = law.c1, law.c2
+        case spec.NeoHookean():
+            w1, w2 = law.c1, 0.0
+        case spec.Yeoh():
+            w1, w2 = law.c1 + 2.0 * law.c2 * first + 3.0 * law.c3 * first**2, 0.0
+        case spec.Gent():
+            w1, w2 = law.mu / 2.0 * law.Jm / (law.Jm - first), 0.0
+    match load:
+        case "uniaxial":
+            return 2.0 * (x - x**-2) * (w1 + w2 / x)
+        case "equibiaxial":
+            return 2.0 * (x - x**-5) * (w1 + w2 * x**2)
+    return 2.0 * (x - x**-3) * (w1 + w2)
+
+
+def assert_same(found: np.ndarray, expected: np.ndarray, relative: float) -> None:
+    """Difference relative to the largest: stresses pass through zero at rest."""
+    np.testing.assert_allclose(found, expected, rtol=0.0, atol=relative * float(np.abs(expected).max()))
+
+
+def test_every_law_is_tested() -> None:
+    assert {type(law) for law in CASES} == set(LAWS) == set(spec.LAWS.values()) - {spec.CustomLaw}
+
+
+@cases
+@loads
+def test_rest(law: spec.Law, load: str) -> None:
+    """No energy and no stress, to rounding."""
+    assert float(energy(law, load)(jnp.array(1.0))) == 0.0
+    assert abs(stress(law, load, np.ones(1))[0]) <= 1e-15 * law.shear_modulus
+
+
+@cases
+@loads
+def test_linear_limit(law: spec.Law, load: str) -> None:
+    """Near rest the energy is that of an incompressible linear solid of the declared shear modulus: mu tr(e^2)."""
+    strains = [float(jax.grad(lambda x, i=i: LOADS[load](x)[i])(1.0)) for i in range(3)]
+    curvature = float(jax.grad(jax.grad(energy(law, load)))(1.0))
+    assert curvature == pytest.approx(2.0 * law.shear_modulus * sum(e * e for e in strains), rel=1e-15, abs=0.0)
+
+
+@cases
+@loads
+def test_stress(law: spec.Law, load: str) -> None:
+    assert_same(stress(law, load), written_by_hand(law, load), 2e-15)
+
+
+@loads
+def test_ogden_contains_mooney_rivlin(load: str) -> None:
+    one, both = spec.NeoHookean(c1=50e3), spec.MooneyRivlin(c1=50e3, c2=12e3)
+    for ogden, other in (
+        (spec.Ogden(mu=(100e3,), alpha=(2.0,)), one),
+        (spec.Ogden(mu=(100e3, -24e3), alpha=(2.0, -2.0)), both),
+    ):
+        assert_same(jax.vmap(energy(ogden, load))(STRETCHES), jax.vmap(energy(other, load))(STRETCHES), 5e-16)
+        assert_same(stress(ogden, load), stress(other, load), 5e-16)
+
+
+@loads
+def test_yeoh_and_mooney_rivlin_contain_neo_hookean(load: str) -> None:
+    for law in (spec.Yeoh(c1=50e3), spec.MooneyRivlin(c1=50e3)):
+        assert_same(stress(law, load), stress(spec.NeoHookean(c1=50e3), load), 1e-15)
+
+
+@loads
+def test_gent_tends_to_neo_hookean(load: str) -> None:
+    """The difference falls like 1/Jm: the energies differ by mu x^2/(4 Jm), x = I1 - 3, and smaller terms."""
+    neo = jax.vmap(energy(spec.NeoHookean(c1=45e3), load))(STRETCHES)
+    first = neo / 45e3
+    for Jm in (1e4, 1e6):
+        gent = jax.vmap(energy(spec.Gent(mu=90e3, Jm=Jm), load))(STRETCHES)
+        assert_same(gent - neo, 90e3 * first**2 / (4.0 * Jm), 7.0 / Jm)
+
+
+def test_gent_has_no_energy_beyond_its_limit() -> None:
+    inside, beyond = energy(spec.Gent(mu=90e3, Jm=3.0), "uniaxial")(jnp.array([2.2, 2.4]))
+    assert math.isfinite(inside)
+    assert math.isnan(beyond)
+
+
+def test_a_law_of_the_users_own() -> None:
+    """Gent's law written by a user in the invariant, its constants by name: same energy, same stress."""
+
+    def mine(l1: jax.Array, l2: jax.Array, l3: jax.Array, given: dict[str, jax.Array]) -> jax.Array:
+        left = given["limit"] + 3.0 - (l1 * l1 + l2 * l2 + l3 * l3)
+        return given["modulus"] * given["limit"] / 2.0 * (jnp.log(given["limit"]) - jnp.log(left))
+
+    own = made_of(spec.CustomLaw(function=mine, constants={"modulus": 90e3, "limit": 12.0}))
+    built_in = made_of(spec.Gent(mu=90e3, Jm=12.0))
+    angles = np.radians(np.linspace(20.0, 60.0, 9))
+    found, expected = ([chamber_density(t, parameters(m), law_of(m)) for t in angles] for m in (own, built_in))
+    assert_same(np.array(found), np.array(expected), 1e-14)
+    for load in LOADS:
+        assert_same(stress(own.chamber.law, load), stress(built_in.chamber.law, load), 2e-15)
+
+
+def test_density_is_that_of_the_wall() -> None:
+    """Energy per unit v: the law at hoop, axial and thickness stretch times the wall's area pi t0 (t0 + 2 R0)."""
+    law, theta = spec.MooneyRivlin(c1=50e3, c2=12e3), 0.8
+    muscle = made_of(law)
+    hoop, axial = math.cos(theta) / math.cos(0.65), math.sin(theta) / math.sin(0.65)
+    one = hoop**2 + axial**2 + (hoop * axial) ** -2 - 3.0
+    two = hoop**-2 + axial**-2 + (hoop * axial) ** 2 - 3.0
+    found = float(chamber_density(theta, parameters(muscle), law_of(muscle)))
+    assert found == pytest.approx(
+        math.pi * ((13.5e-3) ** 2 - (12.5e-3) ** 2) * (50e3 * one + 12e3 * two), rel=1e-14, abs=0.0
+    )
+
+
+def test_a_bare_braid_has_no_chamber_energy() -> None:
+    muscle = made_of(CASES[0]).replace("braid.angle", 0.6)
+    bare = spec.Muscle(braid=muscle.braid)
+    assert float(chamber_density(0.8, parameters(bare), law_of(bare))) == 0.0
