@@ -11,6 +11,7 @@ from muscles import Drawn, between, muscles, reference, scaled
 from mckibben.model.chamber import law_of, mooney_rivlin
 from mckibben.model.cylinder import cylinder_angle, cylinder_force, cylinder_length, cylinder_volume
 from mckibben.model.energy import stored
+from mckibben.model.fibres import fibre_densities
 from mckibben.model.parameters import Parameters
 from mckibben.model.textbook import virtual_work_force
 
@@ -87,3 +88,19 @@ def test_angle_and_length_are_inverse(drawn: Drawn, share: float) -> None:
 def test_angle_beyond_full_extension() -> None:
     p, _ = reference()
     assert float(cylinder_angle(0.2, p)) == math.pi / 2.0
+
+
+@given(drawn=muscles(), share=shares)
+def test_energy_of_helical_fibres(drawn: Drawn, share: float) -> None:
+    """N helices of radius r and angle theta: curvature cos^2/r and torsion sin cos/r, against those at rest."""
+    p = drawn.parameters()
+    theta, theta0, fibre_length = math.asin(share), drawn.theta0, drawn.H0 / math.sin(drawn.theta0)
+    r = fibre_length * math.cos(theta) / (fibre_length * math.cos(theta0) / drawn.R0)  # the turns stay
+    curvature = math.cos(theta) ** 2 / r - math.cos(theta0) ** 2 / drawn.R0
+    torsion = math.sin(theta) * math.cos(theta) / r - math.sin(theta0) * math.cos(theta0) / drawn.R0
+    bending = drawn.E * math.pi * drawn.d**4 / 64.0
+    twisting = bending / (1.0 + drawn.nu)
+    expected = drawn.N * fibre_length / 2.0 * (bending * curvature**2 + twisting * torsion**2)
+    found = float(p.H0 * sum(fibre_densities(theta, 0.0, 0.0, p)))
+    rounding = 1e-15 * drawn.N * fibre_length * bending / drawn.R0**2
+    assert found == pytest.approx(expected, rel=1e-14, abs=rounding)

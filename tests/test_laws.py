@@ -172,6 +172,8 @@ def test_density_is_that_of_the_wall() -> None:
 
 
 def test_a_bare_braid_has_no_chamber_energy() -> None:
-    muscle = made_of(CASES[0]).replace("braid.angle", 0.6)
-    bare = spec.Muscle(braid=muscle.braid)
-    assert float(chamber_density(0.8, parameters(bare), law_of(bare))) == 0.0
+    bare = spec.Muscle(braid=made_of(CASES[0]).braid)
+    p, law = parameters(bare), law_of(bare)
+    assert float(law(1.2, 1.1, 1.0 / (1.2 * 1.1), p.law)) == 0.0
+    assert float(p.A0) == 0.0
+    assert float(chamber_density(0.8, p, law)) == 0.0

@@ -10,7 +10,10 @@ _PUBLIC = {
         "SpecError",
     ),
     "mckibben.experiment": ("run", "MuscleWarning"),
-    "mckibben.result": ("Result",),
+    "mckibben.seek": ("solve",),
+    "mckibben.result": ("Result", "State"),
+    "mckibben.files.case": ("read_case",),
+    "mckibben.files.store": ("load", "save"),
 }  # fmt: skip
 _HOME = {name: module for module, names in _PUBLIC.items() for name in names}
 _MODULES = ("presets",)

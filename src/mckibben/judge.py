@@ -39,13 +39,28 @@ class Judgement:
     reason: str
     shape: Shape
 
+    @classmethod
+    def lost(cls, why: str) -> "Judgement":
+        """No state was found."""
+        return cls(Verdict.NOT_CONVERGED, why, Shape.ORDINARY)
+
+
+END_PLANE_SLACK = 1e-3
+"""How far behind its fitting, in end radii, the wall may pass before the state counts as inadmissible: less than any
+real wall is thick, and enough to keep a pinned end that leans back by a hair."""
+
+
+def clearance(psi: np.ndarray, z: np.ndarray, end_radius: float) -> float:
+    """Room before the shape becomes inadmissible, over the end radius: negative behind the end plane or rolled up."""
+    behind = min(float(z.min() - z[0]), float(z[-1] - z.max())) / end_radius + END_PLANE_SLACK
+    return min(behind, np.pi - float(np.abs(psi).max()))
+
 
 def shape_of(psi: np.ndarray, r: np.ndarray, z: np.ndarray) -> Shape:
     """Shape of one meridian, from its slope [rad], radius and height [m] at points along it."""
     if np.abs(psi).max() > np.pi:
         return Shape.ROLLED_UP
-    slack = 1e-9 * (z[-1] - z[0])
-    if z.min() < z[0] - slack or z.max() > z[-1] + slack:
+    if clearance(psi, z, float(r[0])) < 0.0:
         return Shape.BEHIND_END_PLANE
     if np.abs(psi).max() <= np.pi / 2:
         return Shape.ORDINARY

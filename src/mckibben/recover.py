@@ -32,12 +32,7 @@ from .model.parameters import Law, Number, Parameters
 from .solver.problem import Problem
 
 NODES = 129
-"""Output points along the length: Chebyshev points, which crowd at the fittings where the fields vary most."""
-
-
-def nodes(H0: float) -> np.ndarray:
-    """Material coordinates v [m] of the output points."""
-    return H0 * 0.5 * (1.0 - np.cos(np.pi * np.arange(NODES) / (NODES - 1)))
+"""Output points along the length, crowded at the fittings like the mesh, where the fields vary most."""
 
 
 def _lagrangian(theta: Number, psi: Number, kappa: Number, F: Number, P: Number, p: Parameters, law: Law) -> Number:
@@ -131,37 +126,34 @@ class Recovered:
 
 def recover(problem: Problem, u: np.ndarray, loads: np.ndarray) -> Recovered:
     """Fields and energies of states u (n, m) under dimensionless loads (n, 4)."""
-    n, basis, p, law = len(u), problem.space.basis, problem.p, problem.space.law
+    n, basis, p, b, law = len(u), problem.space.basis, problem.p, problem.b, problem.space.law
     u, loads = _pad(u), _pad(loads)
     F, P = loads[:, 1] * problem.load_unit[1], loads[:, 2] * problem.load_unit[2]
-    v = nodes(float(p.H0))
-    inner = np.asarray(problem.mesh.v)
-    at = np.concatenate([inner, v])
-    theta, psi, kappa = basis.profile(p, problem.b, u, at)
-    q = len(inner)
-    slope = np.asarray(angle_force(law, p, theta[:, :q], psi[:, :q], kappa[:, :q], F, P))
-    integral = basis.integral(p, problem.b, slope, at)
+    inner, outer = basis.profile(p, b, u), basis.profile(p, b, u, NODES)
+    theta, psi, kappa = (np.concatenate(pair, axis=1) for pair in zip(inner, outer, strict=True))
+    slope = np.asarray(angle_force(law, p, *inner, F, P))
+    integral = np.concatenate([basis.integral(p, b, slope), basis.integral(p, b, slope, NODES)], axis=1)
     # p is zero at mid-length of a symmetric state; where equal radii are a constraint it is its multiplier at v = H0
     if basis.closes:
-        end = basis.integral(p, problem.b, slope, np.array([float(p.H0)]))
-        costate = integral - end + loads[:, 3:4] * problem.unit[0]
+        costate = integral - integral[:, -1:] + loads[:, 3:4] * problem.unit[0]
     else:
-        costate = integral - basis.integral(p, problem.b, slope, np.array([0.5 * float(p.H0)]))
+        costate = integral - basis.integral(p, b, slope, 3)[:, 1:2]
     found = {k: np.asarray(f) for k, f in fields(law, p, theta, psi, kappa, costate, F, P).items()}
+    q = problem.mesh.v.size
     energies = {
         name: (found[f"density_{name}"][:, :q] @ problem.mesh.weights)[:n]
         for name in ("bending_1", "bending_2", "twist", "chamber")
     }
     conserved, size = found.pop("conserved"), found.pop("conserved_size").max(axis=1)
     mean = conserved.mean(axis=1, keepdims=True)
-    weight = np.concatenate([problem.mesh.weights / problem.mesh.weights.sum(), np.zeros(len(v))])
+    weight = np.concatenate([problem.mesh.weights / problem.mesh.weights.sum(), np.zeros(NODES)])
     weight[[q, -1]] = 0.5 / q  # the fittings count like a point of the mesh
     variation = np.sqrt((conserved - mean) ** 2 @ weight / weight.sum()) / np.maximum(size, 1e-300)
-    z = basis.integral(p, problem.b, found.pop("height_rate")[:, :q], at)
-    at_nodes = {k: f[:n, q:] for k, f in found.items()} | {"z": z[:n, q:]}
+    z = basis.integral(p, b, found.pop("height_rate")[:, :q], NODES)
+    at_nodes = {k: f[:n, q:] for k, f in found.items()} | {"z": z[:n]}
     coefficients = np.abs(u[:n, : basis.size])
     tail = coefficients[:, -2:].max(axis=1) / np.maximum(coefficients.max(axis=1), 1e-12)
-    return Recovered(v, at_nodes, energies, variation[:n], tail)
+    return Recovered(basis.nodes(p, b, NODES), at_nodes, energies, variation[:n], tail)
 
 
 def _pad(rows: np.ndarray) -> np.ndarray:

@@ -8,7 +8,7 @@ import numpy as np
 from scipy.interpolate import CubicSpline
 
 from .judge import Judgement, Shape, Verdict
-from .recover import NODES, nodes
+from .recover import NODES
 from .result import FIELDS, Result, about, dataset
 from .spec import Muscle, Test
 from .survey import Survey
@@ -49,7 +49,9 @@ def report(muscle: Muscle, test: Test, parts: list[Part], H0: float) -> tuple[Re
     notes = jamming(muscle, steps, fields)
     versions = {name: version(name) for name in ("mckibben", "jax", "numpy", "scipy", "xarray")}
     date = datetime.datetime.now(datetime.UTC).isoformat(timespec="seconds")
-    return Result(muscle, test, dataset(steps, fields, nodes(H0), about(muscle, test, versions, date, notes))), notes
+    known = [part.survey.recovered.v for part in parts if part.survey is not None]
+    v = known[0] if known else np.linspace(0.0, H0, NODES)
+    return Result(muscle, test, dataset(steps, fields, v, about(muscle, test, versions, date, notes))), notes
 
 
 def _columns(k: int, part: Part, H0: float) -> dict[str, np.ndarray]:
@@ -59,7 +61,7 @@ def _columns(k: int, part: Part, H0: float) -> dict[str, np.ndarray]:
     counts = {f"modes_{name}": np.full(n, -1) for name in ("length_control", "force_control", "antisymmetric")}
     column |= counts | {"iterations": np.zeros(n, int), "protocol_step": np.full(n, k)}
     column["converged"] = np.arange(n) < part.reached
-    verdicts = [Judgement(Verdict.NOT_CONVERGED, part.why, Shape.ORDINARY)] * n
+    verdicts = [Judgement.lost(part.why)] * n
     for i in range(max(part.reached, part.possible), n):
         verdicts[i] = Judgement(Verdict.NO_EQUILIBRIUM, part.why, Shape.ORDINARY)
     if look is not None:

@@ -9,6 +9,8 @@ import attrs
 import numpy as np
 import xarray as xr
 
+from .judge import Verdict
+from .solver.stability import Modes
 from .spec import Muscle, Test
 from .spec.text import to_toml
 
@@ -141,6 +143,67 @@ class Result:
     def __repr__(self) -> str:
         words = sorted(set(self.verdict))
         return f"<Result: {self.test.kind}, {len(self)} states, {self.reached} reached, {', '.join(words)}>"
+
+
+@attrs.frozen(eq=False)
+class State:
+    """One state, sought directly: its numbers, verdict and, where it is no good, what there is instead."""
+
+    result: Result
+    verdict: Verdict  #: compares equal to its word
+    reason: str  #: a sentence that a lab user understands
+    modes: Modes | None  #: counts of negative modes
+    last_good: "State | None" = None  #: the last admissible state on the way to one that is not
+    asymmetric: "State | None" = None  #: the stable state to which an antisymmetrically unstable one goes
+
+    @property
+    def muscle(self) -> Muscle:
+        """The specification."""
+        return self.result.muscle
+
+    @property
+    def data(self) -> xr.Dataset:
+        """Everything known of the state, without the step dimension."""
+        return self.result.data.isel(step=0)
+
+    def _number(self, name: str) -> float:
+        return float(self.data[name].values)
+
+    @property
+    def force(self) -> float:
+        """Axial force [N], positive in tension; NaN without an admissible state."""
+        return self._number("force")
+
+    @property
+    def length(self) -> float:
+        """Distance between the fittings [m]."""
+        return self._number("length")
+
+    @property
+    def contraction(self) -> float:
+        """Contraction 1 - h/H0."""
+        return self._number("contraction")
+
+    @property
+    def pressure(self) -> float:
+        """Gauge pressure [Pa]."""
+        return self._number("pressure")
+
+    @property
+    def volume(self) -> float:
+        """Volume inside the braid [m^3]."""
+        return self._number("volume")
+
+    @property
+    def error_estimate(self) -> float:
+        """Estimated relative error of force and length."""
+        return self._number("error_estimate")
+
+    def __repr__(self) -> str:
+        numbers = (
+            f"force {self.force:.6g} N, length {1e3 * self.length:.6g} mm, pressure {1e-5 * self.pressure:.6g} bar"
+        )
+        return f"<State: {self.verdict}, {numbers}>"
 
 
 def about(muscle: Muscle, test: Test, versions: dict[str, str], date: str, warnings: list[str]) -> dict[str, Any]:

@@ -4,9 +4,11 @@ import attrs
 import numpy as np
 
 from .judge import Judgement, judge, shape_of
+from .model.kinematics import height_rate, radius
 from .recover import Recovered, recover
 from .solver.problem import LENGTH, VOLUME, Problem
 from .solver.stability import Modes, count_modes, stiffness
+from .solver.trust import imbalance
 
 
 @attrs.frozen
@@ -53,21 +55,23 @@ def survey(problem: Problem, u: np.ndarray, loads: np.ndarray, held: tuple[str, 
     K = type(K)(*(np.asarray(part)[:n] for part in K))
     modes = count_modes(problem.space, K, pressure_held="volume" not in held)
     recovered = recover(problem, u, loads)
-    seen = recovered.fields
-    verdicts = [
-        judge(modes[k], shape_of(seen["psi"][k], seen["r"][k], seen["z"][k]), "length" in held) for k in range(n)
-    ]
+    meridians = zip(*meridian(problem, u), strict=True)
+    verdicts = [judge(mode, shape_of(*line), "length" in held) for mode, line in zip(modes, meridians, strict=True)]
+    signs = np.concatenate([np.ones((n, 1)), -loads[:, 1:]], axis=1)
+    residual = np.array([imbalance(*pair) for pair in zip(signs, np.asarray(K.gradients), strict=True)])
     return Survey(
-        problem, u, loads, np.asarray(K.totals), imbalance(np.asarray(K.gradients), loads), modes, verdicts, recovered,
+        problem, u, loads, np.asarray(K.totals), residual, modes, verdicts, recovered,
         error_estimate(recovered),
     )  # fmt: skip
 
 
-def imbalance(gradients: np.ndarray, loads: np.ndarray) -> np.ndarray:
-    """Residual of each state over the sum of the magnitudes of its terms."""
-    signs = np.concatenate([np.ones((len(loads), 1)), -loads[:, 1:]], axis=1)
-    rest = np.linalg.norm(np.einsum("nk,nkm->nm", signs, gradients), axis=1)
-    return np.asarray(rest / np.einsum("nk,nk->n", np.abs(signs), np.linalg.norm(gradients, axis=2)))
+def meridian(problem: Problem, u: np.ndarray, count: int = 1001) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Slope [rad], radius and height [m] of states u (n, m) at many points along the length, dense at the fittings."""
+    p, b, basis = problem.p, problem.b, problem.space.basis
+    theta, psi, _ = basis.profile(p, b, u, count)
+    inner, slope, _ = basis.profile(p, b, u)
+    z = basis.integral(p, b, np.asarray(height_rate(inner, slope, p)), count)
+    return psi, np.asarray(radius(theta, p)), z
 
 
 def error_estimate(recovered: Recovered) -> np.ndarray:

@@ -64,19 +64,23 @@ class Spline:
         none = jnp.zeros((len(x), len(x)))
         return Mesh(x * p.H0, w * p.H0, fields, angle, jnp.full(len(x), p.theta0), none)
 
-    def profile(self, p: Parameters, b: float, u: Floats, v: Floats) -> tuple[Floats, Floats, Floats]:
-        """(theta, psi, kappa) of solutions u (steps, m) at any v in [0, H0]: three arrays (steps, points)."""
+    def nodes(self, p: Parameters, b: float, count: int | None = None) -> Floats:
+        """Material coordinates v [m] of `count` uniform output points, or of the mesh's points."""
+        x = _operators(self)[0] if count is None else np.linspace(0.0, 1.0, count)
+        return np.asarray(x * float(p.H0))
+
+    def profile(self, p: Parameters, b: float, u: Floats, count: int | None = None) -> tuple[Floats, Floats, Floats]:
+        """(theta, psi, kappa) of solutions u (steps, m) at the nodes or the mesh points: arrays (steps, points)."""
         H0 = float(p.H0)
-        value, slope, bend = (u @ part.T for part in _basis(self, v / H0))
+        value, slope, bend = (u @ part.T for part in _basis(self, self.nodes(p, b, count) / H0))
         rates = jnp.stack([jnp.asarray(slope) / H0, jnp.asarray(bend) / H0**2])
         theta, psi, kappa = _state(jnp.asarray(float(p.theta0) + value), rates, p)
         return np.asarray(theta), np.asarray(psi), np.asarray(kappa)
 
-    def integral(self, p: Parameters, b: float, values: Floats, v: Floats) -> Floats:
-        """Integral from 0 to v [m] of fields given at the mesh's points (steps, points), through a cubic spline."""
-        x, H0 = _operators(self)[0], float(p.H0)
-        antiderivative = CubicSpline(x * H0, values, axis=1).antiderivative()
-        return np.asarray(antiderivative(v) - antiderivative(0.0))
+    def integral(self, p: Parameters, b: float, values: Floats, count: int | None = None) -> Floats:
+        """Integral from v = 0 of fields given at the mesh's points (steps, points), through a cubic spline."""
+        antiderivative = CubicSpline(self.nodes(p, b), values, axis=1).antiderivative()
+        return np.asarray(antiderivative(self.nodes(p, b, count)) - antiderivative(0.0))
 
 
 @lru_cache(maxsize=8)

@@ -5,7 +5,7 @@ the odd polynomials suffice; their small antisymmetric disturbances have psi eve
 """
 
 from functools import lru_cache
-from typing import Any, Literal
+from typing import Any, Literal, NamedTuple
 
 import attrs
 import jax.numpy as jnp
@@ -66,40 +66,30 @@ class Line:
         copies = 2.0 if self.half else 1.0
         return Mesh(coordinate(x, p, b), copies * w * jac, fields, free, jnp.full(len(x), p.theta0), cumulate * jac)
 
-    def profile(self, p: Parameters, b: float, u: Floats, v: Floats) -> tuple[Floats, Floats, Floats]:
-        """(theta, psi, kappa) of solutions u (steps, m) at any v in [0, H0]: three arrays (steps, points).
+    def nodes(self, p: Parameters, b: float, count: int) -> Floats:
+        """Material coordinates v [m] of `count` output points, crowded like the mesh itself."""
+        return np.asarray(coordinate(_sampling(self, count).x, p, b))
+
+    def profile(self, p: Parameters, b: float, u: Floats, count: int | None = None) -> tuple[Floats, Floats, Floats]:
+        """(theta, psi, kappa) of solutions u (steps, m) at the nodes, or at the mesh's points: arrays (steps, points).
 
         Symmetric spaces are mirrored onto the other half.
         """
-        x, series, c = self._inverse(p, b, v), modes(self), np.asarray(u)[:, : self.size]
-        folded = -np.abs(x) if self.half else x
-        psi = c @ legendre.legval(folded, series)
-        kappa = c @ legendre.legval(folded, legendre.legder(series)) / np.asarray(_stretch(folded, p, b))
+        at, c = _sampling(self, count), np.asarray(u)[:, : self.size]
         rate = np.asarray(angle_rate(c @ _operators(self)[2].T, p))
         start = float(p.theta0) + (u[:, -1:] if self.ends == "free" else 0.0)
-        theta = start + self.integral(p, b, rate, v, mirror=-1.0)
-        return theta, np.where(self.half & (x > 0.0), -1.0, 1.0) * psi, kappa
+        theta = start + (rate * self._jacobian(p, b)) @ at.odd_integral.T
+        return theta, c @ at.shape.T, c @ at.slope.T / np.asarray(_stretch(at.x, p, b))
 
-    def integral(self, p: Parameters, b: float, values: Floats, v: Floats, mirror: float = 1.0) -> Floats:
-        """Integral from 0 to v [m] of fields given at the mesh's points (steps, points).
+    def integral(self, p: Parameters, b: float, values: Floats, count: int | None = None) -> Floats:
+        """Integral from v = 0 to the nodes (or the mesh's points) of fields given at the mesh's points (steps, points).
 
-        On the half line a field goes on as its mirror image, times `mirror`.
+        On the half line a field goes on as its mirror image.
         """
-        xi, weights = legendre.leggauss(self.points)
-        x_points = _operators(self)[0]
-        x = self._inverse(p, b, v)
-        at, length = (1.0 - 2.0 * np.abs(x), 0.5) if self.half else (x, 1.0)
-        density = values * np.asarray(_stretch(x_points, p, b))
-        part: Floats = length * density @ cumulative(xi, weights, at).T
-        if not self.half:
-            return part
-        whole = length * density @ cumulative(xi, weights, np.ones(1)).T
-        return np.asarray(np.where(x <= 0.0, part, whole + mirror * (whole - part)))
+        return np.asarray((values * self._jacobian(p, b)) @ _sampling(self, count).even_integral.T)
 
-    def _inverse(self, p: Parameters, b: float, v: Floats) -> Floats:
-        end = float(np.tanh(b))
-        x: Floats = np.arctanh(np.clip((2.0 * v / float(p.H0) - 1.0) * end, -end, end)) / b
-        return np.clip(x, -1.0, 1.0)
+    def _jacobian(self, p: Parameters, b: float) -> Floats:
+        return np.asarray(_stretch(_operators(self)[0], p, b))
 
 
 FORM = Form(state=lambda theta, y, p: (theta, y[0], y[1]), rate=lambda y, p: angle_rate(y[0], p))
@@ -132,13 +122,42 @@ def modes(line: Line) -> Floats:
     return series
 
 
+class Sampling(NamedTuple):
+    """A space at output points over the full length: constants, so they are made once."""
+
+    x: Floats
+    shape: Floats  #: psi by coefficients
+    slope: Floats  #: d psi/dx by coefficients
+    even_integral: Floats  #: integral in x from -1 of values at the mesh's points, mirrored as they are
+    odd_integral: Floats  #: the same for values that change sign at mid-length
+
+
+@lru_cache(maxsize=64)
+def _sampling(line: Line, count: int | None) -> Sampling:
+    """Sampling at `count` points uniform in x over the full length, or at the mesh's points."""
+    xi, w = legendre.leggauss(line.points)
+    x = _operators(line)[0] if count is None else np.linspace(-1.0, 1.0, count)
+    folded, length = (-np.abs(x), 0.5) if line.half else (x, 1.0)
+    series = modes(line)
+    shape, slope = legendre.legval(folded, series).T, legendre.legval(folded, legendre.legder(series)).T
+    part = length * cumulative(xi, w, 2.0 * folded + 1.0 if line.half else folded)
+    if not line.half:
+        return Sampling(x, shape, slope, part, part)
+    beyond, whole = (x > 0.0)[:, None], length * cumulative(xi, w, np.ones(1))
+    return Sampling(x, np.where(beyond, -shape, shape), slope, np.where(beyond, 2.0 * whole - part, part), part)
+
+
 def cumulative(xi: Floats, w: Floats, at: Floats) -> Floats:
     """Matrix of the integrals from -1 to `at` of the polynomial through values at the Gauss points xi."""
     n = len(xi)
     degree = np.arange(n)
     project = (degree[:, None] + 0.5) * legendre.legvander(xi, n - 1).T * w
-    integrals: Floats = legendre.legval(at, legendre.legint(np.eye(n), lbnd=-1)).T @ project
-    return integrals
+    below = legendre.legvander(at, n)
+    # integral of P_k from -1 is (P_{k+1} - P_{k-1})/(2k + 1), and x + 1 for k = 0
+    integrals = np.concatenate(
+        [at[:, None] + 1.0, (below[:, 2:] - below[:, :-2])[:, : n - 1] / (2.0 * degree[1:] + 1.0)], axis=1
+    )
+    return np.asarray(integrals @ project)
 
 
 def coordinate(x: Any, p: Parameters, b: Number) -> Any:

@@ -1,5 +1,7 @@
 """Straight to one state: the robust search, in physical terms."""
 
+from typing import Any
+
 import attrs
 import numpy as np
 
@@ -44,7 +46,7 @@ def _minimum(problem: Problem, held: Held, u: np.ndarray, guess: np.ndarray, rad
     return equilibrium(problem, minimise(task, u, radius))
 
 
-def inside(state: np.ndarray) -> bool:
+def inside(state: Any) -> bool:
     """Whether the braid angle stays between 0 and 90 deg and every field is a number."""
     theta = np.asarray(state)[:, 0]
     return bool(np.isfinite(np.asarray(state)).all() and theta.min() > 0.0 and theta.max() < np.pi / 2)

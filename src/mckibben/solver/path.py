@@ -12,6 +12,7 @@ from .direct import find
 from .equilibrium import Equilibrium, Held
 from .follow import follow, padded
 from .problem import LENGTH, VOLUME, Problem
+from .trust import imbalance
 
 Watch = Callable[[int, int], None]
 """Told (states done, states in all) as a path advances."""
@@ -37,9 +38,7 @@ def settle(problem: Problem, u: np.ndarray, loads: np.ndarray, iterations: int) 
     """A state from its unknowns and loads, with the residual that it really has."""
     a = problem.evaluate(u)
     signs = np.concatenate([[1.0], -loads[1:]])
-    gradients = np.asarray(a.gradients)
-    scale = np.abs(signs) @ np.linalg.norm(gradients, axis=1)
-    residual = float(np.linalg.norm(signs @ gradients) / scale)
+    residual = imbalance(signs, np.asarray(a.gradients))
     return Equilibrium(problem, u, loads, np.asarray(a.totals), residual < 1e-8, residual, iterations)
 
 

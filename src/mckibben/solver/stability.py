@@ -41,7 +41,7 @@ def stiffness(space: Space, p: Parameters, b: Number, u: Float[Array, "n m"], lo
     tangent, gradients = base.tangents[:, 0], base.gradients
     if not (isinstance(space.basis, Line) and space.basis.half):
         none = jnp.zeros((len(u), 0, 0))
-        return Stiffness(tangent, gradients, base.totals, base.state, none, none[:, :, 0])
+        return Stiffness(tangent, gradients, base.totals, base.state, none, jnp.zeros((len(u), 0)))
     basis = attrs.evolve(space.basis, modes="even")
     even = jax.vmap(carry, (None, 0, 0))(basis.mesh(p, b), local, rows)
     # antisymmetric theta is zero at mid-length: half of the closure, and the change at a free end
@@ -53,38 +53,63 @@ def stiffness(space: Space, p: Parameters, b: Number, u: Float[Array, "n m"], lo
 
 @attrs.frozen
 class Modes:
-    """Numbers of negative modes; None where a discretisation does not separate them."""
+    """Numbers of negative modes, and the softest stiffness of each kind over the stiffest.
+
+    The antisymmetric ones are None where a discretisation does not separate them.
+    """
 
     length_control: int
     force_control: int
     antisymmetric: int | None
+    softest_length: float
+    softest_force: float
+    softest_antisymmetric: float | None
 
-    @property
-    def total_under(self) -> tuple[int, int]:
-        """Negative modes of any symmetry under length control and under force control."""
-        anti = self.antisymmetric or 0
-        return self.length_control + anti, self.force_control + anti
+    def softest(self, length_held: bool) -> float:
+        """Least stiffness of any symmetry under length or force control: zero at a limit of stability."""
+        symmetric = self.softest_length if length_held else self.softest_force
+        return symmetric if self.softest_antisymmetric is None else min(symmetric, self.softest_antisymmetric)
 
 
 def count_modes(space: Space, s: Stiffness, pressure_held: bool = True) -> list[Modes]:
-    """Negative modes of each state; with the volume held instead of the pressure its gradient is a constraint too."""
+    """Modes of each state; with the volume held instead of the pressure its gradient is a constraint too."""
     always = ([] if pressure_held else [VOLUME]) + ([CLOSURE] if space.basis.closes else [])
     found = []
     for k in range(len(s.tangent)):
         K, G = np.asarray(s.tangent[k]), np.asarray(s.gradients[k])
-        length, force = negative(K, G[[LENGTH, *always]]), negative(K, G[always])
-        anti = negative(np.asarray(s.antisymmetric[k]), np.asarray(s.closure[k])[None]) if s.closure.shape[1] else None
-        found.append(Modes(length, force, anti))
+        length, soft_length = negative(K, G[[LENGTH, *always]])
+        force, soft_force = negative(K, G[always])
+        anti, soft_anti = None, None
+        if s.closure.shape[1]:
+            anti, soft_anti = negative(np.asarray(s.antisymmetric[k]), np.asarray(s.closure[k])[None])
+        found.append(Modes(length, force, anti, soft_length, soft_force, soft_anti))
     return found
 
 
-def negative(K: np.ndarray, constraints: np.ndarray) -> int:
-    """Number of negative eigenvalues of K on the null space of the constraint rows; -1 where K is not finite."""
+def weakest(s: Stiffness) -> tuple[np.ndarray, float]:
+    """The softest antisymmetric mode of the first state, in coefficients of the even modes, and its stiffness."""
+    null = null_space(np.asarray(s.closure[0])[None])
+    values, vectors = np.linalg.eigh(null.T @ np.asarray(s.antisymmetric[0]) @ null)
+    return np.asarray(null @ vectors[:, 0]), float(values[0])
+
+
+def null_space(constraints: np.ndarray) -> np.ndarray:
+    """Orthonormal basis of what the constraint rows leave free; rows that are zero constrain nothing."""
+    size = np.abs(constraints).max(axis=1)
+    rows = constraints[size > 1e-10 * max(1.0, float(size.max(initial=0.0)))]
+    if not len(rows):
+        return np.eye(constraints.shape[1])
+    return np.asarray(np.linalg.qr(rows.T, mode="complete")[0][:, len(rows) :])
+
+
+def negative(K: np.ndarray, constraints: np.ndarray) -> tuple[int, float]:
+    """Number of negative eigenvalues of K on the null space of the constraint rows, and the least over the largest.
+
+    (-1, NaN) where K is not finite.
+    """
     if not np.isfinite(K).all():
-        return -1
-    rows = constraints[np.abs(constraints).max(axis=1) > 1e-10 * max(1.0, float(np.abs(constraints).max(initial=0.0)))]
-    if len(rows):
-        null = np.linalg.qr(rows.T, mode="complete")[0][:, len(rows) :]
-        K = null.T @ K @ null
-    values = np.linalg.eigvalsh(K)
-    return int((values < -1e-12 * np.abs(values).max()).sum())
+        return -1, float("nan")
+    null = null_space(constraints)
+    values = np.linalg.eigvalsh(null.T @ K @ null)
+    size = float(np.abs(values).max())
+    return int((values < -1e-12 * size).sum()), float(values[0]) / size

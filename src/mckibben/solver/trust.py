@@ -15,6 +15,15 @@ from numpy.typing import NDArray
 Floats = NDArray[np.floating[Any]]
 
 
+FLOOR = 1e-3
+"""What an imbalance is held against where every term vanishes, as at rest: a small share of the energy unit."""
+
+
+def imbalance(signs: Floats, gradients: Floats) -> float:
+    """Size of the sum of signed gradients over the sum of their sizes."""
+    return float(np.linalg.norm(signs @ gradients) / (np.abs(signs) @ np.linalg.norm(gradients, axis=1) + FLOOR))
+
+
 class Derivatives(Protocol):
     """State at the points, totals (k), gradients (k, m) and tangents (k, m, m)."""
 
@@ -131,12 +140,10 @@ class _Point:
         loads[held] = multipliers
         signs = np.concatenate([[1.0], -loads[1:]])
         hessian = inverse.T @ np.einsum("k,kmn->mn", signs, np.asarray(d.tangents)) @ inverse
-        rest = signs @ gradients
-        scale = np.abs(signs) @ np.linalg.norm(gradients, axis=1)
         magnitude = float(np.abs(totals) @ np.abs(np.concatenate([[1.0], loads[1:]])))
         value = float(totals[0] - loads[free] @ totals[free])
         c = totals[held] - task.targets
-        residual = max(float(np.linalg.norm(rest)) / (scale + 1e-300), float(np.abs(c).max(initial=0.0)))
+        residual = max(imbalance(signs, gradients), float(np.abs(c).max(initial=0.0)))
         return cls(u, value, gradient, hessian, A, c, multipliers, loads, residual, magnitude + 1e-300)
 
 
@@ -211,8 +218,7 @@ def polish(task: Task, u: Floats, loads: Floats, tolerance: float, count: int, l
         totals, gradients = np.asarray(d.totals), np.asarray(d.gradients)
         signs = np.concatenate([[1.0], -loads[1:]])
         rest, c = signs @ gradients, totals[held] - task.targets
-        scale = np.abs(signs) @ np.linalg.norm(gradients, axis=1) + 1e-300
-        residual = max(float(np.linalg.norm(rest)) / scale, float(np.abs(c).max(initial=0.0)))
+        residual = max(imbalance(signs, gradients), float(np.abs(c).max(initial=0.0)))
         if best is None or residual < best.residual:
             best = Solved(u, loads.copy(), residual < tolerance, residual, count + k, "converged")
         elif best.converged or not np.isfinite(residual) or k > 6:

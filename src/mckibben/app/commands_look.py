@@ -1,0 +1,132 @@
+"""`mckibben check`, `presets` and `info`: what a case, a preset, a file or the installation holds, without solving."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from mckibben.app.console import command, examples, say, table
+
+__all__ = ["CHECK", "INFO", "PRESETS", "check", "info", "presets"]
+
+CHECK = examples("mckibben check case.toml", 'mckibben check case.toml --set braid.angle="36 deg"')
+PRESETS = examples("mckibben presets", "mckibben presets paper", "mckibben presets paper --toml > case.toml")
+INFO = examples("mckibben info", "mckibben info out.nc")
+
+
+@command
+def check(
+    case: Annotated[Path, typer.Argument(metavar="CASE.toml", help="the case file: a muscle and, maybe, a test")],
+    overrides: Annotated[
+        list[str] | None,
+        typer.Option("--set", metavar="NAME=VALUE", help='change a value of the case, such as braid.angle="36 deg"'),
+    ] = None,
+) -> None:
+    """Check a case file and show the muscle and the test as understood, without solving.
+
+    Every field is shown with its unit and, where known, its source; what is assumed is marked. Numbers that follow from
+    them, such as the longest possible length, come after.
+    """
+    from mckibben.files.case import read_case
+
+    found = read_case(case, overrides or (), test_required=False)
+    from mckibben.app import fields
+
+    name = f' "{found.muscle.name}"' if found.muscle.name else ""
+    columns = ("field", "value", "meaning", "source")
+    rows = list(fields.muscle_rows(found.muscle))
+    marks, sources = fields.numbered(row[3] for row in rows)
+    marked = [(*row[:3], mark) for row, mark in zip(rows, marks, strict=True)]
+    say(table(columns, marked, title=f"Muscle{name}", whole=(0, 1, 3)))
+    for source in sources:
+        say(source)
+    say()
+    if found.test is not None:
+        say(table(columns[:3], list(fields.test_rows(found.test)), title="Test"))
+    say(table(("derived", *columns[1:3]), list(fields.derived(found.muscle)), title="What follows"))
+    for note in fields.beyond(found.muscle, found.test):
+        say(note)
+    if found.test is None:
+        say('There is no test: add a [test] table, such as kind = "isometric".')
+
+
+@command
+def presets(
+    name: Annotated[str | None, typer.Argument(metavar="[NAME]", help="one preset; all are listed without it")] = None,
+    toml: Annotated[bool, typer.Option("--toml", help="print a case file with the preset, ready to run")] = False,
+) -> None:
+    """List the named muscles, or show one: each value with its source or marked as assumed."""
+    from mckibben import presets as known
+    from mckibben.spec.errors import SpecError
+
+    if name is None:
+        if toml:
+            raise SpecError("--toml", allowed="needs the name of a preset", advice="one of " + ", ".join(known.names()))
+        lines = [(key, (getattr(known, key).__doc__ or "").split("\n")[0]) for key in known.names()]
+        say(table(("preset", "what it is"), lines))
+        return
+    from mckibben.app import fields
+
+    muscle = known.get(name)
+    if toml:
+        typer.echo(fields.case_text(name), nl=False)
+        return
+    rows = [(field, value, source) for field, value, _, source in fields.muscle_rows(muscle)]
+    say(table(("field", "value", "source"), rows, title=f'Muscle "{name}"', whole=(0, 1)))
+
+
+@command
+def info(
+    file: Annotated[Path | None, typer.Argument(metavar="[FILE.nc]", help="a saved result to look into")] = None,
+) -> None:
+    """Show the versions and the machine, or with a file what it holds."""
+    rows = _installation() if file is None else _content(file)
+    say(table(("", ""), rows))
+
+
+def _installation() -> list[tuple[str, str]]:
+    import platform
+    import sys
+    from importlib.metadata import version
+
+    from mckibben.app import cache
+
+    place = cache.use()
+    import jax
+
+    packages = ("mckibben", "jax", "jaxlib", "numpy", "scipy", "xarray", "h5netcdf", "h5py", "matplotlib")
+    rows = [(name, version(name)) for name in packages]
+    rows += [("python", f"{platform.python_version()} ({sys.executable})"), ("platform", platform.platform())]
+    rows.append(("JAX devices", ", ".join(str(device) for device in jax.devices())))
+    if place is None:
+        return [*rows, ("compiled functions", f"not kept: {cache.folder()} cannot be written")]
+    count, size = cache.size(place)
+    return [*rows, ("compiled functions", f"{count} ({size / 2**20:.1f} MB) in {place}")]
+
+
+def _content(file: Path) -> list[tuple[str, str]]:
+    from collections import Counter
+
+    from mckibben.app import fields
+    from mckibben.files import store
+    from mckibben.units import from_si
+
+    result = store.load(file)
+    about = result.data.attrs
+    verdicts = Counter(result.verdict)
+    rows = [
+        ("file", str(file)),
+        ("holds", f"{about['title']}, {len(result)} states"),
+        ("verdicts", ", ".join(f"{count} {verdict}" for verdict, count in verdicts.items())),
+        ("made", f"{about['date']} with {about['versions']}"),
+        ("assumed", about["assumed"] or "nothing"),
+    ]
+    rows += [("warning", warning) for warning in about["warnings"].splitlines() if warning]
+    rows += [(f"test {name}", value) for name, value, _ in fields.test_rows(result.test)]
+    for name, unit in (("length", "mm"), ("force", "N"), ("pressure", "bar"), ("volume", "mL")):
+        values = from_si(result.data[name].values, unit)
+        values = values[values == values]  # without those that are not there
+        rows.append((name, f"{values.min():.5g} to {values.max():.5g} {unit}" if len(values) else "none reached"))
+    return rows

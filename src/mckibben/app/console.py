@@ -1,0 +1,148 @@
+"""What every command shares: where text goes, errors as one line and an exit code, progress, and tables of states.
+
+Results go to stdout; errors, notes about the run and progress to stderr.
+"""
+
+from __future__ import annotations
+
+import functools
+import json
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import contextmanager
+from typing import TYPE_CHECKING, Any, ParamSpec, Protocol
+
+import typer
+
+if TYPE_CHECKING:
+    from rich.console import Console, JustifyMethod
+
+__all__ = [
+    "COMPLETE",
+    "INCOMPLETE",
+    "INPUT",
+    "Watch",
+    "command",
+    "complain",
+    "examples",
+    "progress",
+    "say",
+    "show_json",
+    "table",
+]
+
+COMPLETE, INPUT, INCOMPLETE, INTERRUPTED = 0, 2, 3, 130
+"""Exit codes. 1 is left to what should not happen."""
+
+P = ParamSpec("P")
+
+
+class Watch(Protocol):
+    """To be told (done, in all) and, where the work has several parts, which of them comes next."""
+
+    def __call__(self, done: int, total: int, what: str = "", /) -> None: ...
+
+
+def examples(*lines: str) -> str:
+    """The end of a command's help: what users type, one example a line."""
+    return "\n\n".join(["[bold]Examples[/bold]", *(f"[cyan]{line}[/cyan]" for line in lines)])
+
+
+def _console(stderr: bool = False) -> Console:
+    from rich.console import Console
+
+    return Console(stderr=stderr, highlight=False, markup=False, emoji=False)
+
+
+def say(*things: Any, style: str | None = None) -> None:
+    """Text or tables for the user, on stdout; a line of text is never broken."""
+    _console().print(*things, style=style, soft_wrap=all(isinstance(thing, str) for thing in things))
+
+
+def complain(message: str) -> None:
+    """One line on stderr."""
+    _console(stderr=True).print(f"mckibben: {message}", style="red", soft_wrap=True)
+
+
+def show_json(value: dict[str, Any]) -> None:
+    """One JSON object on stdout and nothing else. NaN and infinity must have become None."""
+    typer.echo(json.dumps(value, ensure_ascii=False, allow_nan=False))
+
+
+def command(function: Callable[P, int | None]) -> Callable[P, None]:
+    """The one place where errors become messages: wrong input exits with 2, an interruption with 130."""
+
+    @functools.wraps(function)
+    def wrapped(*args: P.args, **kwargs: P.kwargs) -> None:
+        from mckibben.spec.errors import SpecError  # here, because `--help` needs none of it
+
+        try:
+            code = function(*args, **kwargs)
+        except SpecError as error:
+            complain(str(error))
+            raise typer.Exit(INPUT) from error
+        except KeyboardInterrupt as error:
+            complain("interrupted")
+            raise typer.Exit(INTERRUPTED) from error
+        raise typer.Exit(code or COMPLETE)
+
+    paragraphs = (function.__doc__ or "").split("\n\n")  # the help keeps the line breaks inside them
+    wrapped.__doc__ = "\n\n".join(" ".join(paragraph.split()) for paragraph in paragraphs)
+    return wrapped
+
+
+@contextmanager
+def progress(what: str, hidden: bool = False) -> Iterator[Watch]:
+    """A function to be told how far long work is; it draws a bar while stderr is a terminal."""
+    console = _console(stderr=True)
+    if hidden or not console.is_terminal:
+        yield lambda done, total, what="", /: None
+        return
+    from rich.progress import BarColumn, MofNCompleteColumn, Progress, SpinnerColumn, TextColumn, TimeElapsedColumn
+
+    columns = (
+        SpinnerColumn(),
+        TextColumn("{task.description}"),
+        BarColumn(),
+        MofNCompleteColumn(),
+        TimeElapsedColumn(),
+    )
+    with Progress(*columns, console=console, transient=True) as bar:
+        task = bar.add_task(f"{what}: compiling", total=None)
+
+        def watch(done: int, total: int, part: str = "", /) -> None:
+            bar.update(task, description=part or what, completed=done, total=total)
+
+        yield watch
+
+
+def table(
+    columns: Sequence[str],
+    rows: Sequence[Sequence[str]],
+    *,
+    title: str = "",
+    right: Sequence[int] = (),
+    whole: Sequence[int] = (0,),
+    most: int = 0,
+) -> Any:
+    """A table of text. Columns by number: those in `right` are numbers, those in `whole` are never broken into lines.
+
+    With `most`, rows in the middle are left out.
+    """
+    from rich import box
+    from rich.table import Table
+    from rich.text import Text
+
+    made = Table(title=Text(title, style="bold") if title else None, title_justify="left", box=box.SIMPLE_HEAD)
+    made.show_header = any(columns)
+    for index, name in enumerate(columns):
+        justify: JustifyMethod = "right" if index in right else "left"
+        made.add_column(Text(name), justify=justify, overflow="fold", no_wrap=index in (*right, *whole))
+    cut = most if 0 < most < len(rows) else len(rows)
+    head = rows[: (cut + 1) // 2] if cut < len(rows) else rows
+    for row in head:
+        made.add_row(*(Text(cell) for cell in row))
+    if cut < len(rows):
+        made.add_row(Text("..."), *(Text("") for _ in columns[1:]))
+        for row in rows[len(rows) - cut // 2 :]:
+            made.add_row(*(Text(cell) for cell in row))
+    return made

@@ -1,0 +1,104 @@
+"""The result of a run for people (a table and notes) and for programs (JSON)."""
+
+from __future__ import annotations
+
+import tomllib
+from collections.abc import Iterator
+from typing import Any
+
+from mckibben.app.console import COMPLETE, INCOMPLETE, say, table
+from mckibben.app.fields import muscle_rows
+from mckibben.files.table import rows
+from mckibben.judge import Verdict
+from mckibben.result import STEP, Result
+from mckibben.units import from_si
+
+__all__ = ["as_json", "exit_code", "show"]
+
+COLUMNS = (("length", "mm"), ("contraction", "%"), ("force", "N"), ("pressure", "bar"), ("volume", "mL"))
+MOST_ROWS = 40
+GOOD = (Verdict.STABLE, Verdict.UNSTABLE)
+
+
+def exit_code(result: Result) -> int:
+    """0 if there is an admissible equilibrium at every state asked for, else 3."""
+    return COMPLETE if all(verdict in GOOD for verdict in result.verdict) else INCOMPLETE
+
+
+def show(result: Result, tolerance: float) -> None:
+    """The table of states, then what a user must know about them."""
+    states = list(rows(result))
+    several = states[-1]["protocol_step"] > 0
+    names = ["state", *(["step"] if several else []), *(f"{name}\n[{unit}]" for name, unit in COLUMNS), "verdict"]
+    cells = [
+        [str(k), *([str(row["protocol_step"])] if several else []), *_numbers(row), row["verdict"]]
+        for k, row in enumerate(states)
+    ]
+    say(
+        table(
+            names,
+            cells,
+            title=result.data.attrs["title"],
+            right=range(len(names) - 1),
+            whole=(len(names) - 1,),
+            most=MOST_ROWS,
+        )
+    )
+    for note in _notes(result, states, tolerance):
+        say(note)
+
+
+def _numbers(row: dict[str, Any]) -> Iterator[str]:
+    for name, unit in COLUMNS:
+        value = row[name]
+        if value is None:
+            yield "-"
+        else:
+            shown = 100.0 * value if unit == "%" else from_si(value, unit)
+            yield f"{shown:.5g}" if abs(shown) > 1e-9 else "0"  # rounding errors of held numbers
+
+
+def _notes(result: Result, states: list[dict[str, Any]], tolerance: float) -> Iterator[str]:
+    found: dict[tuple[str, str], list[int]] = {}
+    for k, row in enumerate(states):
+        if row["verdict"] != Verdict.STABLE:
+            found.setdefault((row["verdict"], row["reason"]), []).append(k)
+    for (verdict, reason), which in found.items():
+        said = reason if reason.startswith(verdict) else f"{verdict}: {reason}"
+        yield f"{_states(which)}: {said}"
+    for warning in filter(None, result.data.attrs["warnings"].splitlines()):
+        yield f"warning: {warning}"
+    worst = max((row["error_estimate"] or 0.0 for row in states), default=0.0)
+    if worst > tolerance:
+        yield f"note: the estimated error, {worst:.1e}, is above the tolerance {tolerance:g}"
+    known = {name: text for name, text, _, _ in muscle_rows(result.muscle)}
+    if known.keys() & set(result.muscle.assumed):
+        shown = ", ".join(f"{name} = {known[name]}" for name in result.muscle.assumed if name in known)
+        yield f"assumed, not measured: {shown}"
+
+
+def _states(which: list[int]) -> str:
+    if len(which) == 1:
+        return f"state {which[0]}"
+    if which == list(range(which[0], which[-1] + 1)):
+        return f"states {which[0]} to {which[-1]}"
+    few = ", ".join(map(str, which[:10]))
+    return f"states {few}" + (", ..." if len(which) > 10 else "")
+
+
+def as_json(result: Result, file: str | None) -> dict[str, Any]:
+    """Everything per state in SI units, None where there is no number, and what it was computed for."""
+    about = result.data.attrs
+    return {
+        "complete": exit_code(result) == COMPLETE,
+        "file": file,
+        "muscle": tomllib.loads(about["muscle"]),
+        "test": tomllib.loads(about["test"]),
+        "assumed": list(result.muscle.assumed),
+        "warnings": list(filter(None, about["warnings"].splitlines())),
+        "units": {name: unit for name, (unit, _) in STEP.items() if unit},
+        "states": list(rows(result)),
+        "mckibben_version": about["mckibben_version"],
+        "versions": about["versions"],
+        "date": about["date"],
+    }

@@ -1,0 +1,121 @@
+"""Results as NetCDF-4 files, through xarray and h5netcdf. What is loaded equals what was saved, number by number."""
+
+from __future__ import annotations
+
+import io
+import tomllib
+from os import PathLike
+from pathlib import Path
+from typing import Any
+
+import h5py
+import numpy as np
+import xarray as xr
+
+from mckibben.files import atomic
+from mckibben.result import FIELDS, STEP, VARIABLES, Result
+from mckibben.spec import Muscle, Test
+from mckibben.spec.errors import SpecError
+from mckibben.spec.text import muscle_from_mapping, test_from_mapping
+
+__all__ = ["load", "save"]
+
+_BROKEN = (OSError, KeyError, ValueError, TypeError, RuntimeError, AttributeError, IndexError, OverflowError, EOFError)
+"""What HDF5 and the layers above it raise for files that are cut short or damaged."""
+
+
+def save(result: Result, path: str | PathLike[str], force: bool = False) -> Path:
+    """Write a result as a NetCDF-4 file; SpecError if the file exists (without `force`) or cannot be written."""
+    atomic.check_target(path, force)
+    return atomic.write(path, memoryview(result.data.to_netcdf(engine="h5netcdf")), force)
+
+
+def load(path: str | PathLike[str]) -> Result:
+    """The result in a NetCDF file written by `save`; SpecError, in one line, for any other file."""
+    name = str(path)
+    stored = _opened(name, _content(path))
+    data = _checked(name, stored)
+    muscle, test = _specification(name, data.attrs)
+    return Result(muscle, test, data)
+
+
+def _content(path: str | PathLike[str]) -> bytes:
+    name = str(path)
+    try:
+        return Path(path).read_bytes()
+    except FileNotFoundError as error:
+        raise SpecError(name, allowed="there is no such file") from error
+    except OSError as error:
+        raise SpecError(name, allowed=f"cannot be read: {error.strerror or error}") from error
+    except ValueError as error:  # a null character in the name
+        raise SpecError(name, allowed="is no name of a file") from error
+
+
+def _opened(name: str, content: bytes) -> xr.Dataset:
+    if not content.startswith(b"\x89HDF\r\n\x1a\n"):
+        said = "is empty" if not content else "is no NetCDF-4 file"
+        raise SpecError(name, allowed=said, advice="give a file that mckibben wrote as .nc")
+    try:
+        _read_through(content)
+        return xr.load_dataset(io.BytesIO(content), engine="h5netcdf", decode_times=False, decode_coords=False)
+    except _BROKEN as error:
+        raise SpecError(name, allowed="is cut short or damaged", advice="make it again") from error
+
+
+def _read_through(content: bytes) -> None:
+    """Touch everything in the file first: h5netcdf, unlike h5py, complains on stderr of what it cannot read."""
+    with h5py.File(io.BytesIO(content), "r") as file:
+        dict(file.attrs)
+        for member in file.values():
+            dict(member.attrs)
+            if isinstance(member, h5py.Dataset):
+                member[...]
+
+
+def _checked(name: str, stored: xr.Dataset) -> xr.Dataset:
+    """The Dataset as `result.dataset` makes it: declared variables, plain text, read-only arrays."""
+    about = {str(key): str(value) for key, value in stored.attrs.items()}
+    writer = about.get("mckibben_version")
+    if writer is None:
+        raise SpecError(name, allowed="holds no result of mckibben")
+    variables: dict[str, Any] = {}
+    for variable in VARIABLES:
+        dims = ("step",) if variable in STEP else ("step", "v")
+        if variable not in stored.data_vars or stored[variable].dims != dims:
+            raise SpecError(
+                name, allowed=f"holds no {variable} per {' and '.join(dims)} (written by mckibben {writer})"
+            )
+        variables[variable] = (dims, _array(name, stored[variable]), dict(stored[variable].attrs))
+    missing = [axis for axis in ("step", "v") if axis not in stored.coords]
+    if missing:
+        raise SpecError(name, allowed=f"holds no coordinate {missing[0]} (written by mckibben {writer})")
+    coords = {axis: ((axis,), stored[axis].values, dict(stored[axis].attrs)) for axis in ("step", "v")}
+    return xr.Dataset(variables, coords, about)
+
+
+_KINDS = {"verdict": "UOT", "reason": "UOT", "shape": "UOT", "converged": "b"}
+
+
+def _array(name: str, variable: xr.DataArray) -> np.ndarray:
+    array = np.asarray(variable.values)
+    kinds = _KINDS.get(str(variable.name), "f" if variable.name in FIELDS else "fi")
+    if array.dtype.kind not in kinds:
+        raise SpecError(name, allowed=f"holds {variable.name} as {array.dtype}")
+    if "U" in kinds:
+        array = array.astype(str)
+    array.flags.writeable = False
+    return array
+
+
+def _specification(name: str, about: dict[str, Any]) -> tuple[Muscle, Test]:
+    """Muscle and test, from their TOML text among the attributes."""
+    try:
+        return (
+            muscle_from_mapping(tomllib.loads(about.get("muscle", ""))),
+            test_from_mapping(tomllib.loads(about.get("test", ""))),
+        )
+    except SpecError as error:
+        advice = "its numbers can be read with xarray.open_dataset"
+        raise SpecError(name, allowed=f"its muscle or test cannot be built again: {error}", advice=advice) from error
+    except tomllib.TOMLDecodeError as error:
+        raise SpecError(name, allowed="is damaged: its muscle or test is not TOML", advice="make it again") from error

@@ -1,0 +1,55 @@
+"""Saving and loading results by the ending of the file's name."""
+
+from __future__ import annotations
+
+from os import PathLike
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from mckibben.files import atomic
+from mckibben.spec.errors import SpecError
+
+if TYPE_CHECKING:
+    from mckibben.result import Result
+
+__all__ = ["SUFFIXES", "check_output", "load", "save", "suffix_of"]
+
+SUFFIXES = {".nc": "everything, to be loaded again (NetCDF-4)", ".csv": "the table of states"}
+
+
+def suffix_of(path: str | PathLike[str], allowed: dict[str, str] = SUFFIXES) -> str:
+    """The ending of a file's name, in lower case; SpecError unless it is one of `allowed`."""
+    suffix = Path(path).suffix.lower()
+    if suffix not in allowed:
+        known = " or ".join(f"{ending} ({meaning})" for ending, meaning in allowed.items())
+        raise SpecError(str(path), allowed=f"must end in {known}")
+    return suffix
+
+
+def check_output(path: str | PathLike[str], force: bool = False) -> None:
+    """SpecError if `save` to `path` would fail for its name, its folder or a file that is there already."""
+    suffix_of(path)
+    atomic.check_target(path, force)
+
+
+def save(result: Result, path: str | PathLike[str], force: bool = False) -> Path:
+    """Save a result: `.nc` keeps everything and can be loaded again, `.csv` is the table of states.
+
+    The file is written whole or not at all. SpecError if it exists (without `force`) or cannot be written.
+    """
+    if suffix_of(path) == ".nc":
+        from mckibben.files import netcdf  # here, because xarray takes a second to import
+
+        return netcdf.save(result, path, force)
+    from mckibben.files import table
+
+    return table.save_csv(result, path, force)
+
+
+def load(path: str | PathLike[str]) -> Result:
+    """The result in an `.nc` file, equal to what was saved. SpecError for any file that is not a whole result."""
+    if Path(path).suffix.lower() == ".csv":
+        raise SpecError(str(path), allowed="is a table only", advice="save results as .nc to load them again")
+    from mckibben.files import netcdf
+
+    return netcdf.load(path)

@@ -1,0 +1,61 @@
+"""Results as CSV tables: one row per state, preceded by comment lines that say what was computed and by what."""
+
+from __future__ import annotations
+
+import csv
+import io
+from collections.abc import Iterator
+from os import PathLike
+from pathlib import Path
+from typing import Any
+
+from mckibben.files import atomic
+from mckibben.result import STEP, Result
+
+__all__ = ["rows", "save_csv"]
+
+
+def save_csv(result: Result, path: str | PathLike[str], force: bool = False) -> Path:
+    """Write the variables per state as a table in SI units, NaN as an empty cell. It cannot be loaded as a result."""
+    text = io.StringIO(newline="")
+    for line in _comments(result):
+        text.write(f"# {line}".rstrip() + "\n")
+    writer = csv.writer(text, lineterminator="\n")
+    writer.writerow(["state", *(_header(name) for name in STEP)])
+    for state, row in enumerate(rows(result)):
+        writer.writerow([state, *(_cell(row[name]) for name in STEP)])
+    return atomic.write(path, text.getvalue().encode("utf-8"), force)
+
+
+def rows(result: Result) -> Iterator[dict[str, Any]]:
+    """The variables of each state as plain Python values in SI; None for a number that is not there."""
+    columns = {name: result.data[name].values.tolist() for name in STEP}
+    for state in range(len(result)):
+        values = {name: column[state] for name, column in columns.items()}
+        yield {name: None if value != value else value for name, value in values.items()}
+
+
+def _header(name: str) -> str:
+    unit = STEP[name][0]
+    return f"{name} [{unit}]" if unit not in ("", "1") else name
+
+
+def _cell(value: Any) -> str:
+    if isinstance(value, bool):
+        return "true" if value else "false"
+    return "" if value is None else str(value)  # the str of a float reads back exactly
+
+
+def _comments(result: Result) -> Iterator[str]:
+    about = result.data.attrs
+    yield about["title"]
+    yield f"made by mckibben {about['mckibben_version']} ({about['versions']}) on {about['date']}"
+    yield f"assumed, not measured: {about['assumed'] or 'nothing'}"
+    for warning in filter(None, about["warnings"].splitlines()):
+        yield f"warning: {warning}"
+    yield "units are SI, in brackets; force > 0 pulls the fittings together; pressure is gauge"
+    for table in ("muscle", "test"):
+        yield ""
+        yield f"the {table} (TOML):"
+        yield from about[table].splitlines()
+    yield ""

@@ -1,0 +1,221 @@
+"""The muscle in three dimensions: surfaces of revolution and fibres in parallel projection.
+
+Only what faces the viewer is drawn, painted from back to front, so vector files look right. The picture in plain 2-D
+axes of equal aspect: no empty margins, and it can stand inside any other figure.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Any
+
+import attrs
+import numpy as np
+from matplotlib import colormaps
+from matplotlib.axes import Axes
+from matplotlib.cm import ScalarMappable
+from matplotlib.collections import Collection, LineCollection, PolyCollection
+from matplotlib.colors import Normalize, to_rgba
+from numpy.typing import NDArray
+
+from ..result import Result
+from ..spec import Muscle
+
+Floats = NDArray[np.float64]
+MM = 1e3
+FITTING = "0.72"
+FACETS = 40
+"""Facets along the length and around the visible half."""
+
+
+@attrs.frozen
+class View:
+    """A parallel projection: the axis lies "horizontal" or "vertical", tilted so that its far end leaves the viewer.
+
+    With tilt > 0 the viewer looks onto the end z = h; `turn` turns the muscle about its axis. Angles in degrees.
+    """
+
+    axis: str = "horizontal"
+    tilt: float = 18.0
+    turn: float = 0.0
+    at: tuple[float, float] = (0.0, 0.0)  #: where the origin stands on the screen [mm]
+
+    def project(self, points: Any) -> tuple[Floats, Floats]:
+        """Screen directions (..., 2) and depths (...) towards the viewer of vectors (..., 3)."""
+        points, t, a = np.asarray(points, float), np.deg2rad(self.tilt), np.deg2rad(self.turn)
+        x = np.cos(a) * points[..., 0] - np.sin(a) * points[..., 1]
+        y = np.sin(a) * points[..., 0] + np.cos(a) * points[..., 1]
+        z = points[..., 2]
+        along, depth = np.cos(t) * z - np.sin(t) * x, np.cos(t) * x + np.sin(t) * z
+        screen = (along, -y) if self.axis == "horizontal" else (y, along)
+        return np.stack(screen, axis=-1), np.asarray(depth)
+
+    def place(self, points: Any) -> Floats:
+        """Positions on the screen [mm] of points (..., 3) [m]."""
+        return self.project(MM * np.asarray(points))[0] + np.array(self.at)
+
+
+@attrs.frozen
+class Tube:
+    """A surface of revolution with its fibres: v, r, z [m] along the meridian, and the braid as made."""
+
+    v: Floats
+    r: Floats
+    z: Floats
+    R0: float
+    theta0: float
+    fibres: int
+
+    @classmethod
+    def of(cls, result: Result, step: int) -> Tube:
+        """The shape of one state of a result."""
+        data, braid = result.data.isel(step=step), result.muscle.braid
+        r, z = np.asarray(data["r"]), np.asarray(data["z"])
+        return cls(np.asarray(data["v"]), r, z, float(braid.radius), float(braid.angle), int(braid.fibres))
+
+    @classmethod
+    def cylinder(cls, muscle: Muscle, theta: float | None = None) -> Tube:
+        """The uniform cylinder at braid angle theta [rad]: the muscle as made where none is given."""
+        braid = muscle.braid
+        R0, H0, theta0 = float(braid.radius), float(braid.length), float(braid.angle)
+        theta = theta0 if theta is None else theta
+        v = np.linspace(0.0, H0, 61)
+        r = np.full(61, R0 * np.cos(theta) / np.cos(theta0))
+        return cls(v, r, v * np.sin(theta) / np.sin(theta0), R0, theta0, int(braid.fibres))
+
+    def at(self, v: Any) -> tuple[Floats, Floats]:
+        """r and z at material coordinates v."""
+        return np.asarray(np.interp(v, self.v, self.r)), np.asarray(np.interp(v, self.v, self.z))
+
+    def point(self, v: Any, phi: Any) -> Floats:
+        """Points (..., 3) of the surface (Eq. 1)."""
+        r, z = self.at(v)
+        return np.stack(np.broadcast_arrays(r * np.cos(phi), r * np.sin(phi), z), axis=-1)
+
+    def normal(self, v: Any, phi: Any) -> Floats:
+        """Outward unit normals (..., 3) (Eq. 4)."""
+        rate = np.interp(v, self.v, np.gradient(self.r, self.v)), np.interp(v, self.v, np.gradient(self.z, self.v))
+        size = np.hypot(*rate)
+        parts = rate[1] * np.cos(phi) / size, rate[1] * np.sin(phi) / size, -rate[0] / size
+        return np.stack(np.broadcast_arrays(*parts), axis=-1)
+
+    def fibre(self, start: float, hand: int, count: int = 161) -> tuple[Floats, Floats]:
+        """(v, phi) along one fibre: phi = start + hand v/(R0 tan(theta0)) (Eq. 7)."""
+        v = np.linspace(self.v[0], self.v[-1], count)
+        return v, start + hand * v / (self.R0 * np.tan(self.theta0))
+
+
+def draw_surface(
+    axes: Axes, tube: Tube, view: View, *, values: Any = None, cmap: str = "viridis", norm: Normalize | None = None,
+    colour: str = "0.93",
+) -> ScalarMappable:  # fmt: skip
+    """The surface where it faces the viewer, coloured by `values` along v, or plain; returns what a bar needs."""
+    v = _even(tube)
+    phi = np.linspace(0.0, 2.0 * np.pi, 2 * FACETS + 1)
+    screen = view.place(tube.point(v[:, None], phi[None, :]))
+    vm, pm = 0.5 * (v[1:] + v[:-1])[:, None], 0.5 * (phi[1:] + phi[:-1])[None, :]
+    _, depth = view.project(MM * tube.point(vm, pm))
+    normal_screen, facing = view.project(tube.normal(vm, pm))
+    corners = np.stack([screen[:-1, :-1], screen[1:, :-1], screen[1:, 1:], screen[:-1, 1:]], axis=2)
+    field = np.interp(vm[:, 0], tube.v, np.zeros_like(tube.v) if values is None else np.asarray(values))
+    colours = ScalarMappable(norm or Normalize(float(np.min(field)), float(np.max(field))), colormaps[cmap])
+    base = np.tile(to_rgba(colour), (len(field), 1)) if values is None else colours.to_rgba(field)
+    light = 0.86 + 0.14 * np.clip(0.85 * facing + 0.5 * normal_screen[..., 1], 0.0, 1.0)  # faint: colours must be read
+    rgba = np.repeat(base[:, None, :], facing.shape[1], axis=1)
+    rgba[..., :3] *= light[..., None]
+    seen = facing > -1e-3
+    order = np.argsort(depth[seen])
+    faces = rgba[seen][order]
+    patches: Any = corners[seen][order]
+    _add(axes, PolyCollection(patches, facecolors=faces, edgecolors=faces, linewidths=0.35, zorder=2.0))
+    return colours
+
+
+def draw_fibres(
+    axes: Axes, tube: Tube, view: View, *, count: int | None = None, front: bool = True, ink: Any = "0.1",
+    width: float = 0.35, zorder: float = 3.0,
+) -> None:  # fmt: skip
+    """The fibres of both hands where they face the viewer (or, with front=False, where they turn away)."""
+    number = tube.fibres // 2 if count is None else max(1, count // 2)
+    strokes: list[Floats] = []
+    for hand in (1, -1):
+        for k in range(number):
+            v, phi = tube.fibre(2.0 * np.pi * k / number, hand)
+            _, facing = view.project(tube.normal(v, phi))
+            strokes += _runs(view.place(tube.point(v, phi)), facing >= 0.0 if front else facing < 0.0)
+    _add(axes, LineCollection(strokes, colors=ink, linewidths=width, zorder=zorder, capstyle="round"))
+
+
+def ink_on(rgba: Floats) -> tuple[float, float, float, float]:
+    """One faint ink for lines upon colours (n, 4): white where most of them are dark, else black."""
+    light = rgba[:, :3] @ np.array([0.299, 0.587, 0.114])
+    return (1.0, 1.0, 1.0, 0.4) if float(np.median(light)) < 0.5 else (0.0, 0.0, 0.0, 0.4)
+
+
+def draw_rings(axes: Axes, tube: Tube, view: View, *, width: float = 0.8, colour: str = "0.25") -> None:
+    """The end circles, the hidden half thin."""
+    phi = np.linspace(0.0, 2.0 * np.pi, 181)
+    for v in (tube.v[0], tube.v[-1]):
+        screen = view.place(tube.point(v, phi))
+        _, facing = view.project(tube.normal(v, phi))
+        seen = facing >= 0.0 if v == tube.v[0] or view.tilt <= 0 else np.ones_like(facing, bool)
+        axes.add_collection(LineCollection(_runs(screen, seen), colors=colour, linewidths=width, zorder=3.2))
+
+
+def draw_fittings(axes: Axes, tube: Tube, view: View, length: float = 5e-3) -> None:
+    """Grey end fittings of the tube's end radii."""
+    for end, sign in ((0, -1.0), (-1, 1.0)):
+        z = tube.z[end] + np.array([0.0, 0.5, 1.0]) * sign * length
+        if sign < 0.0:
+            z = z[::-1]
+        drum = Tube(np.array([0.0, 0.5, 1.0]), np.full(3, tube.r[end]), z, tube.R0, tube.theta0, 0)
+        draw_surface(axes, drum, view, colour=FITTING)
+        towards = np.sign(np.sin(np.deg2rad(view.tilt))) == sign
+        if towards:
+            disc = view.place(drum.point(drum.v[end], np.linspace(0.0, 2.0 * np.pi, 121)))
+            axes.fill(disc[:, 0], disc[:, 1], facecolor="0.82", edgecolor="0.4", linewidth=0.4, zorder=2.5)
+
+
+def draw_muscle(
+    axes: Axes, tube: Tube, view: View | None = None, *, values: Any = None, cmap: str = "viridis",
+    norm: Normalize | None = None, count: int | None = None, fittings: bool = True,
+) -> ScalarMappable:  # fmt: skip
+    """A whole muscle: fittings, surface coloured by a field along v, fibres. Returns what a colour bar needs."""
+    view = view or View()
+    if fittings:
+        draw_fittings(axes, tube, view)
+    colours = draw_surface(axes, tube, view, values=values, cmap=cmap, norm=norm)
+    ink = "0.25" if values is None else ink_on(np.asarray(colours.to_rgba(np.asarray(values))))
+    draw_fibres(axes, tube, view, count=count, ink=ink)
+    frame(axes)
+    return colours
+
+
+def frame(axes: Axes, margin: float = 0.02) -> None:
+    """Equal aspect, no spines, limits around what was drawn (mm on the screen)."""
+    axes.set_aspect("equal")
+    axes.set_axis_off()
+    axes.margins(margin)
+    axes.autoscale_view()
+
+
+def _add(axes: Axes, collection: Collection) -> None:
+    """Add what stays inside the axes anyway: the layout need not measure its thousands of paths."""
+    collection.set_in_layout(False)
+    axes.add_collection(collection)
+
+
+def _even(tube: Tube) -> Floats:
+    """Material coordinates at even steps along the meridian, a few closer to the ends."""
+    if len(tube.v) <= 3:
+        return tube.v
+    arc = np.concatenate([[0.0], np.cumsum(np.hypot(np.diff(tube.r), np.diff(tube.z)))])
+    share = np.linspace(0.0, 1.0, 2 * FACETS + 1)
+    share = share - 0.6 * np.sin(2.0 * np.pi * share) / (2.0 * np.pi)
+    return np.interp(share * arc[-1], arc, tube.v)
+
+
+def _runs(points: Floats, seen: Sequence[bool] | NDArray[np.bool_]) -> list[Floats]:
+    """Pieces of a polyline over consecutive seen points."""
+    edges = np.flatnonzero(np.diff(np.concatenate([[0], np.asarray(seen, int), [0]])))
+    return [points[a:b] for a, b in zip(edges[::2], edges[1::2], strict=True) if b - a > 1]

@@ -1,0 +1,124 @@
+"""What the assembler gives (totals, gradients, tangents) against another quadrature and central differences."""
+
+import jax
+import numpy as np
+import pytest
+from scipy.interpolate import CubicSpline
+
+import mckibben as mk
+from mckibben.discretise.bspline import Spline
+from mckibben.discretise.line import Line
+from mckibben.experiment import Bench
+from mckibben.model.energy import quantities
+from mckibben.recover import angle_force
+from mckibben.solver.direct import find
+from mckibben.solver.equilibrium import Held
+from mckibben.solver.problem import CLOSURE, Problem, Space
+from mckibben.solver.stability import null_space, stiffness
+
+REFERENCE = mk.presets.reference()
+GENT = REFERENCE.replace("chamber.law", mk.Gent(mu="0.1 MPa", Jm=8.0))
+CASES = {
+    "clamped": (REFERENCE, Line(24, "clamped")),
+    "pinned": (REFERENCE, Line(24, "pinned")),
+    "free": (REFERENCE, Line(24, "free")),
+    "full length": (REFERENCE, Line(48, "clamped", "all")),
+    "spline": (REFERENCE, Spline(23, "clamped")),
+    "clamped, gent": (GENT, Line(24, "clamped")),
+    "spline, gent": (GENT, Spline(23, "clamped")),
+}
+EVERY = pytest.mark.parametrize("case", CASES)
+CROWDING, STEP = 2.0, 2e-3
+# Central differences, exact for polynomials of degree 6.
+OFFSETS, WEIGHTS = np.array([-3, -2, -1, 1, 2, 3]), np.array([-1, 9, -45, 45, -9, 1]) / 60.0
+
+
+def problem_of(muscle: mk.Muscle, basis: Line | Spline) -> Problem:
+    bench = Bench.of(muscle)
+    return Problem.of(Space(basis, bench.law), bench.p, CROWDING)
+
+
+def change(problem: Problem, du: np.ndarray) -> float:
+    """Largest change of the slope and of the braid angle [rad] about the cylinder."""
+    theta, psi, _ = problem.space.basis.profile(problem.p, problem.b, du[None])
+    return max(float(np.abs(psi).max()), float(np.abs(theta - problem.p.theta0).max()))
+
+
+def wave(problem: Problem, seed: int, power: int = 1) -> np.ndarray:
+    """Random unknowns, short waves less, that change slope or angle by 0.4 rad: far from straight and flat."""
+    random = np.random.default_rng(seed)
+    m = problem.space.basis.unknowns
+    u = 1e-4 * random.normal(size=m) / (1.0 + np.arange(m)) ** power
+    for _ in range(8):  # slopes of splines are not quite linear in the unknowns
+        u = u * 0.4 / change(problem, u)
+    return u
+
+
+@EVERY
+def test_gradients_and_tangents(case: str) -> None:
+    problem = problem_of(*CASES[case])
+    for seed in range(3):
+        u, du = wave(problem, seed), wave(problem, 10 + seed)
+        at = problem.evaluate(u)
+        gradients, tangents = np.asarray(at.gradients), np.asarray(at.tangents)
+        np.testing.assert_allclose(tangents, np.swapaxes(tangents, 1, 2), rtol=0.0, atol=2e-15 * np.abs(tangents).max())
+        near = [problem.evaluate(u + k * STEP * du) for k in OFFSETS]
+        slope = sum(w * np.asarray(a.totals) for w, a in zip(WEIGHTS, near, strict=True)) / STEP
+        bend = sum(w * np.asarray(a.gradients) for w, a in zip(WEIGHTS, near, strict=True)) / STEP
+        first, second = (np.abs(array) @ np.abs(du) for array in (gradients, tangents))
+        np.testing.assert_allclose(slope, gradients @ du, rtol=0.0, atol=1e-11 * first.max())
+        np.testing.assert_allclose(bend, tangents @ du, rtol=0.0, atol=2e-11 * second.max())
+
+
+@EVERY
+def test_totals(case: str) -> None:
+    """Energy, length, volume and closure again, from the profile at many output points."""
+    muscle, basis = CASES[case]
+    problem = problem_of(muscle, basis)
+    p, law = problem.p, problem.space.law
+    density = jax.vmap(lambda *state: quantities(*state, p, law))
+    for seed in range(3):
+        u = wave(problem, seed, power=3)
+        v = basis.nodes(p, problem.b, 2001)
+        densities = density(*(field[0] for field in basis.profile(p, problem.b, u[None], 2001)))
+        expected = CubicSpline(v, np.asarray(densities)).integrate(0.0, float(p.H0)) / problem.unit
+        found = np.asarray(problem.evaluate(u).totals)
+        # the half line's own closure means nothing: odd slopes close by themselves
+        n = CLOSURE if isinstance(basis, Line) and basis.half else CLOSURE + 1
+        # three Gauss points per element see a wave of 20 elements to 1e-5
+        np.testing.assert_allclose(found[:n], expected[:n], rtol=0.0, atol=1e-10 if isinstance(basis, Line) else 2e-5)
+
+
+@pytest.mark.parametrize("ends", ["clamped", "free"])
+def test_antisymmetric_tangent_is_the_even_block_of_the_full_line(ends: str) -> None:
+    """At a symmetric state, among disturbances that keep the end radii equal (or turn both free ends by as much)."""
+    muscle = REFERENCE.replace("ends", ends)
+    half, full = problem_of(muscle, Line(24, ends)), problem_of(muscle, Line(48, ends, "all"))
+    held = Held.of(length=0.100, pressure=1e5)
+    one, two = find(half, held), find(full, held)
+    small = stiffness(half.space, half.p, half.b, one.u[None], one.loads[None])
+    big = stiffness(full.space, full.p, full.b, two.u[None], two.loads[None])
+    odd, even = np.arange(1, 48, 2), np.arange(0, 48, 2)
+    if ends == "free":  # its angle is the last unknown
+        odd, even = np.append(odd, 48), np.append(even, 48)
+    else:
+        np.testing.assert_allclose(big.gradients[0, CLOSURE, even], 2.0 * small.closure[0], atol=1e-13)
+    np.testing.assert_allclose(two.u[odd], one.u, atol=1e-13)
+    keep, K = null_space(np.asarray(small.closure)), np.asarray(big.tangent[0])
+    antisymmetric = keep.T @ np.asarray(small.antisymmetric[0]) @ keep
+    found = keep.T @ K[np.ix_(even, even)] @ keep
+    np.testing.assert_allclose(found, antisymmetric, rtol=0.0, atol=2e-11 * np.abs(antisymmetric).max())
+    symmetric = np.asarray(small.tangent[0])
+    np.testing.assert_allclose(K[np.ix_(odd, odd)], symmetric, rtol=0.0, atol=5e-11 * np.abs(symmetric).max())
+    assert np.abs(keep.T @ K[np.ix_(even, odd)]).max() < 1e-14 * np.abs(K).max()
+
+
+def test_closing_moment_is_the_costate_at_the_fitting() -> None:
+    """Zero at mid-length, the costate of a symmetric state grows to what holds the radii of the full line equal."""
+    half, full = problem_of(REFERENCE, Line(24)), problem_of(REFERENCE, Line(48, modes="all"))
+    held = Held.of(length=0.100, pressure=1e5)
+    state = find(half, held)
+    profile = half.space.basis.profile(half.p, half.b, state.u[None])
+    slope = angle_force(half.space.law, half.p, *profile, np.array([state.force]), np.array([state.pressure]))
+    costate = 0.5 * float(np.asarray(slope)[0] @ half.mesh.weights)
+    assert costate / float(half.unit[0]) == pytest.approx(find(full, held).closure, rel=1e-12)

@@ -1,0 +1,250 @@
+"""Results in files: what is loaded equals what was saved, and no file is ever half old, half new or silently wrong."""
+
+import csv
+import errno
+import os
+import signal
+import subprocess
+import sys
+import time
+import tomllib
+from pathlib import Path
+
+import attrs
+import numpy as np
+import pytest
+import xarray as xr
+from results import made
+
+import mckibben as mk
+from mckibben.files import atomic
+from mckibben.result import FIELDS, VARIABLES, Result
+from mckibben.spec.text import muscle_from_mapping, test_from_mapping
+
+PAPER = mk.presets.paper()
+CURVE = mk.Isobaric(pressure="1 bar", length="118 mm to 130 mm", points=5)
+
+
+@pytest.fixture(scope="module")
+def incomplete() -> Result:
+    return made(PAPER, CURVE, reached=3)
+
+
+def same(a: Result, b: Result) -> bool:
+    """Equal, also in types, and as well protected."""
+    types = all(a.data[name].dtype.kind == b.data[name].dtype.kind for name in VARIABLES)
+    return a == b and types and not any(b.data[name].values.flags.writeable for name in VARIABLES)
+
+
+@pytest.mark.parametrize(
+    ("muscle", "test", "reached"),
+    [
+        (PAPER, CURVE, 3),
+        (mk.presets.reference(), mk.Isometric(length="115 mm", pressure=[0.0, 12345.678901234567]), 2),
+        (
+            PAPER.replace("chamber", mk.Chamber(thickness=1e-3, law=mk.Ogden(mu=[1e4, 2e3], alpha=[1.3, -2.0]))),
+            mk.Protocol(
+                steps=[
+                    mk.Step(length="to 115 mm", pressure=0.0, points=3),
+                    mk.Step(length="hold", pressure="0 to 1 bar", points=4),
+                    mk.Step(pressure="hold", force="to 0 N", points=2),
+                ]
+            ),
+            4,
+        ),
+        (mk.Muscle(braid=PAPER.braid, name='bare "braid", ends = [free]\n'), CURVE, 0),
+    ],
+    ids=["assumed", "list", "protocol", "bare"],
+)
+def test_loaded_equals_saved(
+    tmp_path: Path, muscle: mk.Muscle, test: mk.Isobaric | mk.Protocol | mk.Isometric, reached: int
+) -> None:
+    result = made(muscle, test, reached)
+    again = mk.load(mk.save(result, tmp_path / "out.nc"))
+    assert same(result, again)
+    assert again.verdict == result.verdict
+    assert again.reached == reached
+
+
+def test_a_run_is_saved_and_loaded(tmp_path: Path) -> None:
+    result = mk.run(PAPER, attrs.evolve(CURVE, points=4))
+    assert set(result.verdict) == {"stable", "no equilibrium"}
+    assert same(result, mk.load(mk.save(result, tmp_path / "run.nc")))
+
+
+def test_table_says_what_it_is(tmp_path: Path, incomplete: Result) -> None:
+    path = mk.save(incomplete, tmp_path / "out.csv")
+    lines = path.read_text(encoding="utf-8").splitlines()
+    comments = [line.removeprefix("#").removeprefix(" ") for line in lines if line.startswith("#")]
+    assert "mckibben 0.1.0" in comments[1]
+    assert "2026-01-01" in comments[1]
+    assert "braid.fibres" in comments[2]
+    assert "warning: neighbouring fibres touch" in comments
+    start, middle = comments.index("the muscle (TOML):"), comments.index("the test (TOML):")
+    assert muscle_from_mapping(tomllib.loads("\n".join(comments[start + 1 : middle]))) == PAPER
+    assert test_from_mapping(tomllib.loads("\n".join(comments[middle + 1 :]))) == CURVE
+    rows = list(csv.DictReader(line for line in lines if not line.startswith("#")))
+    assert [float(row["force [N]"]) for row in rows[:3]] == incomplete.force[:3].tolist()
+    assert {"contraction", "pressure [Pa]", "volume [m^3]", "energy [J]"} <= rows[0].keys()
+    assert not set(FIELDS) & rows[0].keys()
+    lost = [rows[3][name] for name in ("force [N]", "length [m]", "converged", "verdict")]
+    assert lost == ["", "", "false", "no equilibrium"]
+    assert rows[3]["reason"] == incomplete.data["reason"].values[3]
+
+
+@pytest.mark.parametrize("name", ["out.nc", "out.csv"])
+def test_nothing_is_replaced_unless_asked(tmp_path: Path, incomplete: Result, name: str) -> None:
+    path = tmp_path / name
+    path.write_text("precious")
+    with pytest.raises(mk.SpecError, match=r"exists; give --force"):
+        mk.save(incomplete, path)
+    assert path.read_text() == "precious"
+    mk.save(incomplete, path, force=True)
+    assert path.stat().st_size > 1000
+    assert os.listdir(tmp_path) == [name]
+
+
+@pytest.mark.parametrize(
+    ("name", "said"),
+    [
+        ("out.xlsx", r"must end in \.nc .* or \.csv"),
+        ("out", "must end in"),
+        ("missing/out.nc", "there is no folder"),
+        ("file/out.nc", "there is no folder|cannot be written"),
+        ("folder.nc", "is a folder"),
+        ("nu\0ll.nc", "no name of a file"),
+    ],
+)
+def test_places_that_cannot_be_written(tmp_path: Path, incomplete: Result, name: str, said: str) -> None:
+    (tmp_path / "file").write_text("")
+    (tmp_path / "folder.nc").mkdir()
+    with pytest.raises(mk.SpecError, match=said) as error:
+        mk.save(incomplete, tmp_path / name, force=True)
+    assert "\n" not in str(error.value)
+
+
+def test_every_cut_is_noticed(tmp_path: Path, incomplete: Result) -> None:
+    whole = mk.save(incomplete, tmp_path / "whole.nc").read_bytes()
+    path = tmp_path / "cut.nc"
+    for size in {0, 1, 7, 8, 9, 47, 48, 96, 511, *range(600, len(whole), 4001), len(whole) - 1}:
+        path.write_bytes(whole[:size])
+        with pytest.raises(mk.SpecError, match=r"is empty|is no NetCDF-4 file|is cut short or damaged") as error:
+            mk.load(path)
+        assert "\n" not in str(error.value)
+
+
+def test_damage_is_a_clear_error(tmp_path: Path, incomplete: Result, capfd: pytest.CaptureFixture[str]) -> None:
+    whole = mk.save(incomplete, tmp_path / "whole.nc").read_bytes()
+    path, rng, noticed = tmp_path / "damaged.nc", np.random.default_rng(0), 0
+    for _ in range(40):
+        damaged = bytearray(whole)
+        for at in rng.integers(0, len(whole), 60):
+            damaged[at] = rng.integers(256)
+        path.write_bytes(damaged)
+        try:
+            mk.load(path)
+        except mk.SpecError:
+            noticed += 1
+    assert noticed > 20
+    assert capfd.readouterr().err == ""
+
+
+def test_files_that_hold_no_result(tmp_path: Path, incomplete: Result) -> None:
+    path = tmp_path / "other.nc"
+
+    def refused(data: xr.Dataset, said: str) -> None:
+        data.to_netcdf(path, engine="h5netcdf")
+        with pytest.raises(mk.SpecError, match=said):
+            mk.load(path)
+
+    refused(xr.Dataset({"x": ("t", [1.0, 2.0])}), "holds no result of mckibben")
+    refused(incomplete.data.drop_vars("force"), "holds no force per step")
+    refused(incomplete.data.assign(force=incomplete.data["r"]), "holds no force per step")
+    refused(incomplete.data.assign(force=incomplete.data["verdict"]), "holds force as")
+    refused(incomplete.data.drop_vars("v"), "holds no coordinate v")
+    refused(incomplete.data.assign_attrs(muscle="[["), "is not TOML")
+    refused(incomplete.data.assign_attrs(test='kind = "isometic"'), r"test\.kind = isometic: is unknown")
+    for name, said in (("missing.nc", "no such file"), ("out.csv", "is a table only"), ("", "cannot be read")):
+        with pytest.raises(mk.SpecError, match=said):
+            mk.load(tmp_path / name)
+
+
+def test_a_law_of_ones_own_is_saved_but_not_rebuilt(tmp_path: Path) -> None:
+    law = mk.CustomLaw(function=lambda l1, l2, l3, constants: constants["a"] * (l1 - 1.0) ** 2, constants={"a": 1e4})
+    result = made(mk.Muscle(braid=PAPER.braid, chamber=mk.Chamber(thickness="1 mm", law=law)), CURVE, reached=2)
+    path = mk.save(result, tmp_path / "own.nc")
+    with pytest.raises(mk.SpecError, match=r"a law of your own .* xarray\.open_dataset"):
+        mk.load(path)
+    with xr.open_dataset(path, engine="h5netcdf") as data:
+        assert data["force"].identical(result.data["force"])
+
+
+@pytest.mark.parametrize("broken", ["fsync", "replace", "fdopen"])
+def test_a_failed_write_leaves_the_old_file(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, broken: str) -> None:
+    path = tmp_path / "out.nc"
+    path.write_bytes(b"old")
+
+    def full(*_: object, **__: object) -> None:
+        raise OSError(errno.ENOSPC, os.strerror(errno.ENOSPC))
+
+    monkeypatch.setattr(atomic.os, broken, full)
+    with pytest.raises(mk.SpecError, match="cannot be written: No space left on device"):
+        atomic.write(path, b"new", force=True)
+    assert path.read_bytes() == b"old"
+    assert os.listdir(tmp_path) == ["out.nc"]
+
+
+def test_an_interrupted_write_leaves_the_old_file(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    path = tmp_path / "out.nc"
+    path.write_bytes(b"old")
+
+    def interrupt(*_: object) -> None:
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr(atomic.os, "fsync", interrupt)
+    with pytest.raises(KeyboardInterrupt):
+        atomic.write(path, b"new", force=True)
+    assert path.read_bytes() == b"old"
+    assert os.listdir(tmp_path) == ["out.nc"]
+
+
+WRITER = """
+import sys
+from mckibben.files.atomic import write
+turn = 0
+while True:
+    turn += 1
+    write(sys.argv[1], bytes([turn % 256]) * 3_000_000, force=True)
+    print(turn, flush=True)
+"""
+
+
+@pytest.mark.skipif(os.name != "posix", reason="kills by signal")
+def test_a_kill_leaves_a_whole_file(tmp_path: Path) -> None:
+    path = tmp_path / "out.bin"
+    for pause in (0.011, 0.023):
+        with subprocess.Popen([sys.executable, "-c", WRITER, str(path)], stdout=subprocess.PIPE) as writer:
+            assert writer.stdout is not None
+            writer.stdout.readline()
+            time.sleep(pause)
+            writer.send_signal(signal.SIGKILL)
+        content = path.read_bytes()
+        assert len(content) == 3_000_000
+        assert len(set(content)) == 1
+
+
+@pytest.mark.skipif(os.name != "posix", reason="links and permissions")
+def test_links_and_permissions_stay(tmp_path: Path) -> None:
+    real, link = tmp_path / "real.nc", tmp_path / "link.nc"
+    real.write_bytes(b"old")
+    real.chmod(0o640)
+    link.symlink_to(real)
+    atomic.write(link, b"new", force=True)
+    assert link.is_symlink()
+    assert real.read_bytes() == b"new"
+    assert real.stat().st_mode & 0o777 == 0o640
+    mask = os.umask(0o027)
+    try:
+        assert atomic.write(tmp_path / "fresh.nc", b"").stat().st_mode & 0o777 == 0o640
+    finally:
+        os.umask(mask)
