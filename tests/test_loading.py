@@ -165,7 +165,7 @@ def test_tests_as_steps():
         (lambda: Isotonic(force=[1, 2], pressure=0), "isotonic.force", "must be one value"),
         (lambda: Step(pressure=0), "step", "pressure given; control exactly two"),
         (lambda: Step(length=1, force=1, pressure=0), "step", "length and force and pressure given"),
-        (lambda: Step(length=1), "step", "exactly two of length, force, pressure, volume"),
+        (lambda: Step(length=1), "step", "exactly two of length, force, pressure, volume, or"),
         (lambda: Step(length=[1, 2], pressure=[1, 2, 3]), "step", "length lists 2 values and pressure lists 3"),
         (lambda: Step(length=1, volume=-1), "step.volume", "above 0 mL"),
         (lambda: Protocol([]), "protocol.steps", "one or more"),

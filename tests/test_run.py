@@ -102,9 +102,9 @@ def test_steps_after_one_that_failed_are_not_tried():
 
 def test_jamming_is_a_warning_with_the_state():
     tight = PAPER.replace("braid.fibre.diameter", "1.6 mm").replace("braid.fibre.E", "1 MPa")
-    with pytest.warns(mk.MuscleWarning, match="state 2 .length 70 mm"):
+    with pytest.warns(mk.MuscleWarning, match="state 2 .70 mm"):
         curve = mk.run(tight, mk.Isobaric(pressure="1 bar", length="85 to 70 mm", points=3))
-    assert "jams" in curve.data.attrs["warnings"]
+    assert "jams" in curve.cautions[0]
 
 
 def test_a_result_is_immutable_and_says_what_it_is():

@@ -7,6 +7,7 @@ from typing import Any
 import attrs
 import numpy as np
 
+from .caution import thick_wall
 from .discretise.bspline import Spline
 from .discretise.line import Line
 from .model.chamber import law_of
@@ -14,11 +15,14 @@ from .model.extension import full_extension
 from .model.parameters import Law, Parameters, parameters
 from .report import Part, report
 from .result import Result
+from .solver.arclength import branch
+from .solver.direct import find
 from .solver.equilibrium import NAMES, Equilibrium, Held
-from .solver.path import Watch, trace
+from .solver.gas import sealed
+from .solver.path import INTERRUPTED, Trace, Watch, trace
 from .solver.placement import crowding
 from .solver.problem import VOLUME, Problem, Space
-from .spec import Muscle, SpecError, Step, Test
+from .spec import Along, Muscle, SpecError, Step, Test
 from .survey import survey
 
 SIZES = {"spectral": (24, 48, 96), "paper": (43,)}
@@ -50,6 +54,12 @@ class Bench:
         """The muscle on a discretisation."""
         basis = Spline(size, self.ends) if discretisation == "paper" else Line(size, self.ends, modes)
         return Problem.of(Space(basis, self.law), self.p, b)
+
+    def placement(self, held: Held) -> float:
+        """Crowding of points for one state."""
+        force, pressure = held.get("force", np.nan), held.get("pressure", 0.0)
+        length = min(held.get("length", float(self.p.H0) if np.isnan(force) else np.nan), 0.999 * self.longest)
+        return crowding(self.law, self.p, np.array([length]), np.array([force]), np.array([pressure]))
 
     def too_long(self) -> str:
         """Why no equilibrium exists beyond full extension."""
@@ -84,7 +94,8 @@ def run(
         watch: called with (states done, states in all).
 
     Returns:
-        A `Result`. States that were not reached hold NaN and say why in `verdict` and `reason`.
+        A `Result`. States that were not reached hold NaN and say why in `verdict` and `reason`. Ctrl-C ends the test:
+        the part reached comes back, with `status` "interrupted".
 
     Raises:
         SpecError: for a tolerance or discretisation out of range; never for a test that cannot be finished.
@@ -94,9 +105,9 @@ def run(
     for size in sizes_for(discretisation, tolerance):
         parts = _follow(bench, bench.problem(size, b, discretisation), steps, tolerance, watch or (lambda k, n: None))
         errors = [float(part.survey.error.max()) for part in parts if part.survey is not None]
-        if max(errors, default=0.0) <= tolerance:
+        if max(errors, default=0.0) <= tolerance or any(part.why == INTERRUPTED for part in parts):
             break
-    result, notes = report(muscle, test, parts, float(bench.p.H0))
+    result, notes = report(muscle, test, parts, float(bench.p.H0), thick_wall(muscle))
     for note in notes:
         warnings.warn(note, MuscleWarning, stacklevel=2)
     return result
@@ -127,29 +138,46 @@ def _follow(
     here: Equilibrium | None = None
     total, done = sum(step.points for step in steps), 0
     for step in steps:
-        first, second = step.controls
-        held, n, before = (str(first), str(second)), step.points, done
+        n, held = step.points, tuple(str(name) for name in step.controls)
         if parts and here is None:
             parts.append(Part(held, n, n, None, np.zeros(0, int), "the step before was not finished"))
             continue
         wanted = np.stack([getattr(step, name).sample(n, present[name]) for name in held], axis=1)
         beyond = np.flatnonzero(wanted[:, 0] >= bench.longest) if held[0] == "length" else np.zeros(0, int)
         possible = int(beyond[0]) if len(beyond) else n
-        path = [Held.of(**dict(zip(held, row, strict=True))) for row in wanted[:possible].tolist()]
-        if not path:
+        tell = _later(watch, done, total)
+        track = _walk(problem, step, wanted[:possible], here, tolerance, tell) if possible else None
+        if track is None:
             parts.append(Part(held, n, 0, None, np.zeros(0, int), bench.too_long()))
             continue
-        track = trace(problem, path, here, min(1e-4, tolerance), _later(watch, before, total))
         k = track.reached
         look = survey(problem, track.u[:k], track.loads[:k], held) if k else None
-        parts.append(
-            Part(held, n, possible, look, track.iterations[:k], bench.too_long() if k == possible else track.message)
-        )
-        here = track.state(k - 1) if k == n else None
+        beyond_reach = k == possible < n and track.message != INTERRUPTED
+        why = bench.too_long() if beyond_reach else track.message
+        asked = max(k, 1) if step.along == Along.BRANCH and track.message != INTERRUPTED else n
+        parts.append(Part(held, asked, min(possible, asked), look, track.iterations[:k], why))
+        here = track.state(k - 1) if k == asked else None
         if here is not None:
             present = {name: getattr(here, name) for name in NAMES}
         done += n
     return parts
+
+
+def _walk(
+    problem: Problem, step: Step, wanted: np.ndarray, here: Equilibrium | None, tolerance: float, tell: Watch
+) -> Trace:
+    """The states of one step, by the way it asks for."""
+    held = tuple(str(name) for name in step.controls)
+    if step.gas is not None:
+        rest = Held.of(length=float(problem.p.H0), pressure=0.0)
+        start = find(problem, rest) if here is None else here
+        return sealed(problem, held[0], wanted[:, 0].tolist(), start, str(step.gas), tell)
+    path = [Held.of(**dict(zip(held, row, strict=True))) for row in wanted.tolist()]
+    if step.along == Along.BRANCH:
+        first = find(problem, path[0], here)
+        if first.converged:
+            return branch(problem, first, path, tell)
+    return trace(problem, path, here, min(1e-4, tolerance), tell)
 
 
 def _later(watch: Watch, before: int, total: int) -> Watch:

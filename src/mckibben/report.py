@@ -1,15 +1,18 @@
 """From the steps of a test, as far as they were reached, to the `Result`."""
 
 import datetime
+from functools import cache
 from importlib.metadata import version
 
 import attrs
 import numpy as np
 from scipy.interpolate import CubicSpline
 
+from .caution import after
 from .judge import Judgement, Shape, Verdict
 from .recover import NODES
 from .result import FIELDS, Result, about, dataset
+from .solver.path import INTERRUPTED
 from .spec import Muscle, Test
 from .survey import Survey
 
@@ -24,7 +27,7 @@ NUMBERS = (
 class Part:
     """One step of a test: what was held, how many states were asked for, and those that were reached."""
 
-    held: tuple[str, str]
+    held: tuple[str, ...]
     asked: int
     possible: int  #: states before full extension
     survey: Survey | None
@@ -37,7 +40,7 @@ class Part:
         return 0 if self.survey is None else len(self.survey.u)
 
 
-def report(muscle: Muscle, test: Test, parts: list[Part], H0: float) -> tuple[Result, list[str]]:
+def report(muscle: Muscle, test: Test, parts: list[Part], H0: float, cautions: list[str]) -> tuple[Result, list[str]]:
     """The Result, and what a real muscle would do that the model does not know."""
     columns = [_columns(k, part, H0) for k, part in enumerate(parts)]
     steps = {name: np.concatenate([column[name] for column in columns]) for name in columns[0]}
@@ -46,12 +49,19 @@ def report(muscle: Muscle, test: Test, parts: list[Part], H0: float) -> tuple[Re
     for values in (*fields.values(), *(steps[name] for name in NUMBERS)):
         values[lost] = np.nan
     steps["work"] = np.concatenate(_work(columns, lost))
-    notes = jamming(muscle, steps, fields)
-    versions = {name: version(name) for name in ("mckibben", "jax", "numpy", "scipy", "xarray")}
+    notes = [*cautions, *after(muscle, steps, fields)]
+    stopped = any(part.why == INTERRUPTED for part in parts)
+    status = INTERRUPTED if stopped else "incomplete" if lost.any() else "complete"
     date = datetime.datetime.now(datetime.UTC).isoformat(timespec="seconds")
     known = [part.survey.recovered.v for part in parts if part.survey is not None]
     v = known[0] if known else np.linspace(0.0, H0, NODES)
-    return Result(muscle, test, dataset(steps, fields, v, about(muscle, test, versions, date, notes))), notes
+    return Result(muscle, test, dataset(steps, fields, v, about(muscle, test, versions(), date, notes, status))), notes
+
+
+@cache
+def versions() -> dict[str, str]:
+    """Versions that a result carries."""
+    return {name: version(name) for name in ("mckibben", "jax", "numpy", "scipy", "xarray")}
 
 
 def _columns(k: int, part: Part, H0: float) -> dict[str, np.ndarray]:
@@ -110,17 +120,3 @@ def _work(columns: list[dict[str, np.ndarray]], lost: np.ndarray) -> list[np.nda
         found.append(work)
         at += n
     return found
-
-
-def jamming(muscle: Muscle, steps: dict[str, np.ndarray], fields: dict[str, np.ndarray]) -> list[str]:
-    """A note where neighbouring fibres of one hand come to touch: (N/2) d against 2 pi r sin(theta)."""
-    fibre = muscle.braid.fibre
-    if fibre.diameter is None:
-        return []
-    room = 2.0 * np.pi * fields["r"] * np.sin(fields["theta"]) / (0.5 * muscle.braid.fibres * fibre.diameter)
-    jammed = np.flatnonzero(np.where(np.isnan(room), np.inf, room).min(axis=1) < 1.0)
-    if not len(jammed):
-        return []
-    k = int(jammed[0])
-    where = f"state {k} (length {1e3 * steps['length'][k]:.4g} mm, pressure {1e-5 * steps['pressure'][k]:.4g} bar)"
-    return [f"neighbouring fibres touch from {where} on: the braid jams there, which the model does not know"]

@@ -136,9 +136,19 @@ class Result:
         return tuple(str(word) for word in self._column("verdict"))
 
     @property
+    def cautions(self) -> tuple[str, ...]:
+        """What a real muscle may do that the model does not know; each names the state from which it may."""
+        return tuple(filter(None, self.data.attrs["warnings"].split("\n")))
+
+    @property
     def reached(self) -> int:
         """Number of states with an equilibrium."""
         return int(self._column("converged").sum())
+
+    @property
+    def status(self) -> str:
+        """complete, incomplete (some states have no admissible equilibrium or were not reached) or interrupted."""
+        return str(self.data.attrs["status"])
 
     def __repr__(self) -> str:
         words = sorted(set(self.verdict))
@@ -195,6 +205,11 @@ class State:
         return self._number("volume")
 
     @property
+    def cautions(self) -> tuple[str, ...]:
+        """What a real muscle may do there that the model does not know."""
+        return tuple(filter(None, self.result.data.attrs["warnings"].split("\n")))
+
+    @property
     def error_estimate(self) -> float:
         """Estimated relative error of force and length."""
         return self._number("error_estimate")
@@ -206,7 +221,9 @@ class State:
         return f"<State: {self.verdict}, {numbers}>"
 
 
-def about(muscle: Muscle, test: Test, versions: dict[str, str], date: str, warnings: list[str]) -> dict[str, Any]:
+def about(
+    muscle: Muscle, test: Test, versions: dict[str, str], date: str, warnings: list[str], status: str
+) -> dict[str, Any]:
     """Attributes that a Dataset carries."""
     return {
         "title": f"McKibben muscle, {test.kind} test",
@@ -216,6 +233,7 @@ def about(muscle: Muscle, test: Test, versions: dict[str, str], date: str, warni
         "mckibben_version": versions["mckibben"],
         "versions": ", ".join(f"{name} {version}" for name, version in versions.items()),
         "date": date,
+        "status": status,
         "warnings": "\n".join(warnings),
         "source": "Quaglierini, Arroyo, DeSimone, RoboSoft 2023",
     }

@@ -6,15 +6,16 @@ import attrs
 import numpy as np
 
 from .branch import Look, branch_end, look
+from .caution import before
 from .discretise.line import Line
 from .experiment import Bench, sizes_for
 from .judge import Verdict
+from .reach import holding
 from .recover import recover
 from .report import Part, report
 from .result import State
 from .solver.direct import find, refine
 from .solver.equilibrium import Equilibrium, Held
-from .solver.placement import crowding
 from .solver.stability import stiffness, weakest
 from .spec import Muscle, SpecError, Step
 from .survey import error_estimate, survey
@@ -76,7 +77,7 @@ def _state(bench: Bench, muscle: Muscle, step: Step, held: Held, tolerance: floa
 
 def seek(bench: Bench, held: Held, tolerance: float) -> Look:
     """Straight to a state, on as many unknowns as the tolerance needs."""
-    b = _placement(bench, held)
+    b = bench.placement(held)
     sizes = sizes_for("spectral", tolerance)
     state = _direct(bench, held, sizes[0], b)
     for size in sizes[1:]:
@@ -87,13 +88,6 @@ def seek(bench: Bench, held: Held, tolerance: float) -> Look:
     if not state.converged:  # a coarse space may lack the state
         state = _direct(bench, held, sizes[-1], b)
     return look(state, held)
-
-
-def _placement(bench: Bench, held: Held) -> float:
-    longest, H0 = 0.999 * bench.longest, float(bench.p.H0)
-    force = held.get("force", np.nan)
-    length = min(held.get("length", H0 if np.isnan(force) else np.nan), longest)
-    return crowding(bench.law, bench.p, np.array([length]), np.array([force]), np.array([held.get("pressure", 0.0)]))
 
 
 def _error(state: Equilibrium) -> float:
@@ -135,7 +129,7 @@ def _made(bench: Bench, muscle: Muscle, step: Step, held: Held, found: Look, **m
     state = found.state
     view = survey(state.problem, state.u[None], state.loads[None], held.names)
     part = Part(held.names, 1, 1, view, np.array([state.iterations]), "")
-    result, _ = report(muscle, step, [part], float(bench.p.H0))
+    result, _ = report(muscle, step, [part], float(bench.p.H0), _before(muscle, held))
     verdict = more.pop("verdict", found.verdict.verdict)
     reason = more.pop("reason", found.verdict.reason)
     return State(result, verdict, reason, view.modes[0], **more)
@@ -143,7 +137,7 @@ def _made(bench: Bench, muscle: Muscle, step: Step, held: Held, found: Look, **m
 
 def _nothing(bench: Bench, muscle: Muscle, step: Step, held: Held, verdict: Verdict, reason: str, **more: Any) -> State:
     part = Part(held.names, 1, 0 if verdict == Verdict.NO_EQUILIBRIUM else 1, None, np.zeros(0, int), reason)
-    result, _ = report(muscle, step, [part], float(bench.p.H0))
+    result, _ = report(muscle, step, [part], float(bench.p.H0), _before(muscle, held))
     return State(result, verdict, reason, None, **more)
 
 
@@ -195,10 +189,18 @@ def _instead(bench: Bench, muscle: Muscle, step: Step, held: Held, found: Look) 
         f"no admissible state at {_said(held)}: from {_said(first)} good states end at "
         f"{show(end.held.get(axial), 'm' if axial == 'length' else 'N', 5)}, where {end.cause.reason}"
     )
+    if axial == "length":
+        enough = holding(bench, held.get("length"), pressure, 1e-4)
+        if np.isfinite(enough):
+            reason += f"; {show(enough, 'Pa', 3)} or more holds {show(held.get('length'), 'm', 5)}"
     last_step = Step(**dict(zip(end.held.names, end.held.values, strict=True)))
     last = _made(bench, muscle, last_step, end.held, end.last)
     verdict = Verdict.INADMISSIBLE if verdict == Verdict.INADMISSIBLE else Verdict.NOT_CONVERGED
     return _nothing(bench, muscle, step, held, verdict, reason, last_good=last)
+
+
+def _before(muscle: Muscle, held: Held) -> list[str]:
+    return before(muscle, held.get("length"), held.get("pressure", 0.0))
 
 
 def _said(held: Held) -> str:

@@ -6,7 +6,7 @@ import tomllib
 from collections.abc import Iterator
 from typing import Any
 
-from mckibben.app.console import COMPLETE, INCOMPLETE, say, table
+from mckibben.app.console import COMPLETE, INCOMPLETE, INTERRUPTED, say, table
 from mckibben.app.fields import muscle_rows
 from mckibben.files.table import rows
 from mckibben.judge import Verdict
@@ -21,7 +21,9 @@ GOOD = (Verdict.STABLE, Verdict.UNSTABLE)
 
 
 def exit_code(result: Result) -> int:
-    """0 if there is an admissible equilibrium at every state asked for, else 3."""
+    """0 if there is an admissible equilibrium at every state asked for, 130 after Ctrl-C, else 3."""
+    if result.status == "interrupted":
+        return INTERRUPTED
     return COMPLETE if all(verdict in GOOD for verdict in result.verdict) else INCOMPLETE
 
 

@@ -14,6 +14,9 @@ from .follow import follow, padded
 from .problem import LENGTH, VOLUME, Problem
 from .trust import imbalance
 
+INTERRUPTED = "interrupted"
+"""Message of a path that was ended by Ctrl-C."""
+
 Watch = Callable[[int, int], None]
 """Told (states done, states in all) as a path advances."""
 
@@ -51,31 +54,49 @@ def trace(
 ) -> Trace:
     """States for every entry of `path` (all holding the same two names), from `start` or sought directly."""
     n, size = len(path), problem.space.basis.unknowns
-    u, loads, iterations = np.full((n, size), np.nan), np.full((n, 4), np.nan), np.zeros(n, int)
-    first = find(problem, path[0], start)
-    if not first.converged and start is not None:
-        first = find(problem, path[0])
-    reached, message, here = 0, first.message, first
+    rows = _Rows(np.full((n, size), np.nan), np.full((n, 4), np.nan), np.zeros(n, int))
+    try:
+        message = _advance(problem, path, start, tolerance, watch, rows)
+    except KeyboardInterrupt:  # the part reached is worth keeping
+        message = INTERRUPTED
+    return Trace(problem, rows.u, rows.loads, rows.iterations, rows.reached, message)
+
+
+@attrs.define
+class _Rows:
+    """States as they come in."""
+
+    u: np.ndarray
+    loads: np.ndarray
+    iterations: np.ndarray
+    reached: int = 0
+
+    def add(self, u: np.ndarray, loads: np.ndarray, iterations: int) -> None:
+        """Keep one more state; it counts only once all of it is there."""
+        k = self.reached
+        self.u[k], self.loads[k], self.iterations[k] = u, loads, iterations
+        self.reached = k + 1
+
+
+def _advance(
+    problem: Problem, path: list[Held], start: Equilibrium | None, tolerance: float, watch: Watch, rows: _Rows
+) -> str:
+    """Fill in rows as far as it goes; the message says why it ended."""
+    n = len(path)
+    here = find(problem, path[0], start)
+    if not here.converged and start is not None:
+        here = find(problem, path[0])
     while here.converged:
-        u[reached], loads[reached], iterations[reached] = here.u, here.loads, here.iterations
-        reached += 1
-        watch(reached, n)
-        if reached == n:
-            break
-        done = _follow(problem, path[reached - 1 :], here, tolerance)
-        for w, count in done:
-            u[reached], loads[reached], iterations[reached] = w[:-2], [1.0, w[-2], w[-1], 0.0], count
-            reached += 1
-        watch(reached, n)
-        if reached == n:
-            break
-        here = _search(problem, path[reached - 1], path[reached], _state(problem, u, loads, reached - 1))
-        message = here.message
-    return Trace(problem, u, loads, iterations, reached, message if reached < n else "converged")
-
-
-def _state(problem: Problem, u: np.ndarray, loads: np.ndarray, k: int) -> Equilibrium:
-    return settle(problem, u[k], loads[k], 0)
+        rows.add(here.u, here.loads, here.iterations)
+        watch(rows.reached, n)
+        for w, count in _follow(problem, path[rows.reached - 1 :], here, tolerance):
+            rows.add(w[:-2], np.array([1.0, w[-2], w[-1], 0.0]), count)
+        watch(rows.reached, n)
+        if rows.reached == n:
+            return "converged"
+        k = rows.reached
+        here = _search(problem, path[k - 1], path[k], settle(problem, rows.u[k - 1], rows.loads[k - 1], 0))
+    return here.message
 
 
 def _follow(problem: Problem, path: list[Held], here: Equilibrium, tolerance: float) -> list[tuple[np.ndarray, int]]:

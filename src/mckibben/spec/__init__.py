@@ -5,8 +5,10 @@ from mckibben.spec.errors import SpecError
 from mckibben.spec.laws import LAWS, CustomLaw, Gent, Law, MooneyRivlin, NeoHookean, Ogden, Yeoh
 from mckibben.spec.loading import (
     TESTS,
+    Along,
     BlockedForce,
     FreeContraction,
+    Gas,
     Isobaric,
     Isometric,
     Isotonic,
@@ -21,6 +23,7 @@ from mckibben.spec.reference import reference_markdown
 __all__ = [
     "LAWS",
     "TESTS",
+    "Along",
     "BlockedForce",
     "Braid",
     "Chamber",
@@ -28,6 +31,7 @@ __all__ = [
     "Ends",
     "Fibre",
     "FreeContraction",
+    "Gas",
     "Gent",
     "Isobaric",
     "Isometric",

@@ -6,13 +6,14 @@ Signs: force > 0 pulls the fittings together; pressure is gauge.
 
 from __future__ import annotations
 
+from enum import StrEnum
 from typing import Any, ClassVar
 
 import attrs
 
 from mckibben.spec.declared import Declared, Reads, declare
 from mckibben.spec.errors import SpecError
-from mckibben.spec.fields import count, spec
+from mckibben.spec.fields import choice, count, spec
 from mckibben.spec.muscle import Muscle
 from mckibben.spec.path import Path, PathMode
 from mckibben.units import DISPLAY, UnitError, is_traced
@@ -93,27 +94,49 @@ def _settle_points(test: Any) -> None:
     object.__setattr__(test, "points", points)
 
 
+class Gas(StrEnum):
+    """A fixed amount of gas, sealed in as the step begins: slow (isothermal) or fast (adiabatic, n = 1.4)."""
+
+    ISOTHERMAL = "isothermal"
+    ADIABATIC = "adiabatic"
+
+
+class Along(StrEnum):
+    """How a step goes on: value by value, or along the branch of states, past limit points where the value turns."""
+
+    VALUES = "values"
+    BRANCH = "branch"
+
+
 @spec("step")
 class Step:
-    """Part of a test with any two of length, force, pressure and volume controlled."""
+    """Part of a test with any two of length, force, pressure and volume controlled, or length or force and the gas."""
 
     kind: ClassVar[str] = "step"
     length: Reads[Path | None] = controlled("length", default=None)
     force: Reads[Path | None] = controlled("force", default=None)
     pressure: Reads[Path | None] = controlled("pressure", default=None)
     volume: Reads[Path | None] = controlled("volume", default=None)
+    gas: Reads[Gas | None] = choice(Gas, meaning="gas sealed in, in place of a pressure or volume", default=None)
+    along: Reads[Along] = choice(
+        Along, meaning="go value by value, or along the branch past limit points", default=Along.VALUES
+    )
     points: Reads[int] = points_field()
 
     def __attrs_post_init__(self) -> None:
-        given = self.controls
-        if len(given) != 2:
+        given = (*self.controls, *(("gas",) if self.gas is not None else ()))
+        if len(given) != 2 or (self.gas is not None and given[0] not in ("length", "force")):
             said = f"{' and '.join(given) or 'nothing'} given"
-            raise SpecError("step", allowed=said, advice=f"control exactly two of {', '.join(_QUANTITIES)}")
+            options = f"control exactly two of {', '.join(_QUANTITIES)}, or length or force and gas"
+            raise SpecError("step", allowed=said, advice=options)
+        varied = [name for name in self.controls if getattr(self, name).varies]
+        if self.along == Along.BRANCH and (self.gas is not None or len(varied) != 1):
+            raise SpecError("step.along", str(self.along), "needs one of two controlled quantities to vary")
         _settle_points(self)
 
     @property
     def controls(self) -> tuple[str, ...]:
-        """The names of the two controlled quantities."""
+        """The names of the controlled quantities: two, or one beside the gas."""
         return tuple(name for name in _QUANTITIES if getattr(self, name) is not None)
 
     def as_steps(self, muscle: Muscle) -> tuple[Step, ...]:

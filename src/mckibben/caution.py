@@ -1,0 +1,80 @@
+"""What a real muscle may do that the model does not know, said before solving or with the result."""
+
+from typing import Any
+
+import numpy as np
+
+from .model.chamber import law_of
+from .model.parameters import parameters
+from .model.wrinkling import wrinkling
+from .spec import Muscle
+from .units import show
+
+THICK_WALL = 0.2
+"""Wall over radius above which a thin wall is a coarse assumption: stretches vary by about this much across it."""
+SLENDER = 5.0
+"""Length over diameter above which a muscle in compression may bow like a column."""
+
+Columns = dict[str, np.ndarray]
+
+
+def before(muscle: Muscle, length: float | None, pressure: float) -> list[str]:
+    """Cautions that need no solution: wall thickness, and wrinkling of the cylinder of the target length [m]."""
+    notes = thick_wall(muscle)
+    if length is not None:
+        p, law = parameters(muscle), law_of(muscle)
+        index, wave = (float(x) for x in wrinkling(np.asarray(length), np.asarray(pressure), p, law))
+        if index < -1.0:
+            at = f"{show(length, 'm', 4)} and {show(pressure, 'Pa', 4)}"
+            notes.append(
+                f"a tube of this kind is expected to wrinkle at {at} (index {index:.2f}, below -1), in waves of about "
+                f"{show(wave, 'm', 2)}: more pressure or stiffer fibres prevent it"
+            )
+    return notes
+
+
+def thick_wall(muscle: Muscle) -> list[str]:
+    """The chamber's wall against the thin-wall assumption."""
+    if muscle.chamber is None or muscle.chamber.thickness <= THICK_WALL * muscle.braid.radius:
+        return []
+    ratio = muscle.chamber.thickness / muscle.braid.radius
+    return [f"chamber.thickness is {ratio:.2f} of the radius: the model takes the wall as thin (below {THICK_WALL:g})"]
+
+
+def after(muscle: Muscle, steps: Columns, fields: Columns) -> list[str]:
+    """Cautions that a result gives rise to: jamming, column buckling, broken fibres; each with its first state."""
+    return [*jamming(muscle, steps, fields), *column(steps, fields), *breaking(muscle, steps, fields)]
+
+
+def jamming(muscle: Muscle, steps: Columns, fields: Columns) -> list[str]:
+    """Neighbouring fibres of one hand come to touch: (N/2) d against 2 pi r sin(theta)."""
+    fibre = muscle.braid.fibre
+    if fibre.diameter is None:
+        return []
+    room = 2.0 * np.pi * fields["r"] * np.sin(fields["theta"]) / (0.5 * muscle.braid.fibres * fibre.diameter)
+    return _first((room < 1.0).any(axis=1), steps, "neighbouring fibres touch: the braid jams, which the model ignores")
+
+
+def column(steps: Columns, fields: Columns) -> list[str]:
+    """A slender muscle in compression may bow sideways, which an axisymmetric model cannot."""
+    slender = steps["length"] > SLENDER * 2.0 * np.nanmin(np.where(np.isnan(fields["r"]), np.inf, fields["r"]), axis=1)
+    said = f"compressed and longer than {SLENDER:g} diameters: it may bow like a column, which the model ignores"
+    return _first(slender & (steps["force"] < 0.0), steps, said)
+
+
+def breaking(muscle: Muscle, steps: Columns, fields: Columns) -> list[str]:
+    """Fibre tension above the breaking force that was given."""
+    strength = muscle.braid.fibre.breaking_force
+    if strength is None:
+        return []
+    said = f"the fibre tension exceeds the breaking force of {show(strength, 'N', 4)}"
+    return _first((fields["fibre_tension"] > strength).any(axis=1), steps, said)
+
+
+def _first(hit: Any, steps: Columns, said: str) -> list[str]:
+    states = np.flatnonzero(hit)
+    if not len(states):
+        return []
+    k = int(states[0])
+    at = f"{show(float(steps['length'][k]), 'm', 4)}, {show(float(steps['pressure'][k]), 'Pa', 4)}"
+    return [f"from state {k} ({at}) on: {said}"]

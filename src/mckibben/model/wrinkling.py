@@ -1,0 +1,33 @@
+"""Whether a uniform cylinder under load is expected to wrinkle before it reaches a target (theory page, stability)."""
+
+from functools import partial
+
+import jax
+import jax.numpy as jnp
+
+from .cylinder import cylinder_angle, cylinder_force
+from .energy import stored
+from .kinematics import height_rate, volume_rate
+from .parameters import Law, Number, Parameters, static_braid
+
+
+@partial(jax.jit, static_argnums=3)
+def wrinkling(length: Number, pressure: Number, p: Parameters, law: Law) -> tuple[Number, Number]:
+    """Wrinkling index and wavelength [m, along v] of the cylinder of a given length [m] at a gauge pressure [Pa].
+
+    index = (L_psipsi + 2 a L_thetakappa) / (2 a sqrt(L_kappakappa L_thetatheta)) with a = 1/(R0 tan theta0) and L the
+    energy per unit v with its loads. Below -1 a wave of length 2 pi (L_kappakappa/(a^2 L_thetatheta))^(1/4) grows
+    without bound on an endless tube; clamped ends delay it. NaN where L_thetatheta is not positive.
+    """
+    theta = cylinder_angle(length, p)
+    force = cylinder_force(theta, pressure, p, law)
+
+    def lagrangian(x: jax.Array) -> Number:
+        t, psi, kappa = x
+        loads = force * height_rate(t, psi, p) + pressure * volume_rate(t, psi, p)
+        return stored(t, psi, kappa, p, law) - loads
+
+    H = jax.hessian(lagrangian)(jnp.stack([theta, jnp.zeros_like(theta), jnp.zeros_like(theta)]))
+    a = static_braid(p)
+    index = (H[1, 1] + 2.0 * a * H[0, 2]) / (2.0 * a * jnp.sqrt(H[2, 2] * H[0, 0]))
+    return index, 2.0 * jnp.pi * (H[2, 2] / (a**2 * H[0, 0])) ** 0.25

@@ -1,0 +1,149 @@
+"""Limits as a feature: the shortest and longest length, the force extremum, the least pressure that holds a length."""
+
+from typing import Any
+
+import attrs
+import numpy as np
+import xarray as xr
+
+from .branch import BranchEnd, branch_end, look
+from .experiment import Bench
+from .judge import Shape
+from .solver.direct import find
+from .solver.equilibrium import Held
+from .spec import Muscle, Path, SpecError, Step
+from .spec.text import to_toml
+
+SIZE = 48
+"""Half-length unknowns: limits of the reference muscle to 1e-8."""
+DOUBLINGS = 24
+"""Pressures tried upwards when one is sought that holds a length, each twice the last."""
+
+
+@attrs.frozen
+class Limits:
+    """What a muscle can do at one pressure. Lengths [m], forces [N], pressures [Pa]; NaN where there is none."""
+
+    pressure: float
+    shortest: float  #: shortest length of a stable, admissible state
+    shortest_force: float  #: force there
+    shortest_cause: str  #: why no shorter one is admissible
+    stable_down_to: float  #: shortest length of a stable state, wherever its wall lies
+    stable_force: float  #: force there
+    longest: float  #: full extension: no equilibrium at or beyond it
+    force_extremum: float  #: largest compressive force (least force) on the way to the shortest length
+    force_extremum_length: float  #: length there
+
+
+def limits(muscle: Muscle, *, pressure: Any) -> Limits:
+    """Limits of a muscle at one gauge pressure, on the path from its initial length to shorter ones.
+
+    Raises:
+        SpecError: for a pressure that is not one value in range.
+    """
+    P, bench = _value("pressure", pressure), Bench.of(muscle)
+    nothing = Limits(P, *(np.nan,) * 2, "", *(np.nan,) * 2, bench.longest, *(np.nan,) * 2)
+    stable = _shorten(bench, P, shapes=False)
+    if stable.last is None:
+        return attrs.evolve(nothing, shortest_cause=stable.cause.reason)
+    end = _shorten(bench, P, shapes=True)
+    extremum = _force_extremum(bench, P, end)
+    return attrs.evolve(
+        nothing,
+        shortest=end.held.get("length"),
+        shortest_force=end.last.state.force if end.last else np.nan,
+        shortest_cause=end.cause.reason,
+        stable_down_to=stable.held.get("length"),
+        stable_force=stable.last.state.force,
+        force_extremum=extremum[0],
+        force_extremum_length=extremum[1],
+    )
+
+
+def _value(name: str, value: Any) -> float:
+    """One controlled quantity from what a user gives."""
+    other = "length" if name == "pressure" else "pressure"
+    path = getattr(Step(**{name: value, other: 1.0}), name)
+    if path.needs_present or path.varies:
+        raise SpecError(f"limits.{name}", str(path), "must be one value")
+    return float(path.sample(1)[0])
+
+
+def _shorten(bench: Bench, pressure: float, shapes: bool) -> BranchEnd:
+    """From the initial length towards a tenth of it."""
+    start = Held.of(length=float(bench.p.H0), pressure=pressure)
+    target = Held.of(length=0.1 * float(bench.p.H0), pressure=pressure)
+    middle = Held.of(length=0.55 * float(bench.p.H0), pressure=pressure)
+    return branch_end(bench.problem(SIZE, bench.placement(middle)), start, target, 1e-10, shapes)
+
+
+def _force_extremum(bench: Bench, pressure: float, end: BranchEnd) -> tuple[float, float]:
+    """Least force between the initial length and the end of the branch, and its length."""
+    if end.last is None:
+        return np.nan, np.nan
+    problem, state = end.last.state.problem, end.last.state
+    forces, lengths = [state.force], [state.length]
+    for length in np.linspace(state.length, float(bench.p.H0), 41)[1:]:
+        state = find(problem, Held.of(length=float(length), pressure=pressure), state, radius=0.3)
+        forces.append(state.force)
+        lengths.append(state.length)
+    k = int(np.argmin(forces))
+    if k == 0:
+        return forces[0], lengths[0]
+    if k == len(forces) - 1:
+        return forces[k], lengths[k]
+    curve = np.polyfit(lengths[k - 1 : k + 2], forces[k - 1 : k + 2], 2)
+    at = float(-0.5 * curve[1] / curve[0])
+    found = find(problem, Held.of(length=at, pressure=pressure), end.last.state)
+    return found.force, at
+
+
+def least_pressure(muscle: Muscle, *, length: Any, shapes: bool = True) -> float:
+    """Least gauge pressure [Pa], zero or above, at which a muscle is stable and admissible at a length.
+
+    Without `shapes` only stability counts, not where the wall lies. NaN where no pressure does, as beyond full
+    extension.
+    """
+    h, bench = _value("length", length), Bench.of(muscle)
+    if h >= bench.longest:
+        return float("nan")
+    return holding(bench, h, 0.0, shapes=shapes)
+
+
+def holding(bench: Bench, length: float, pressure: float, tolerance: float = 1e-10, shapes: bool = True) -> float:
+    """Least pressure at or above `pressure` that holds a length; NaN if none up to some 10 GPa does."""
+    problem = bench.problem(SIZE, bench.placement(Held.of(length=length, pressure=max(pressure, 1e4))))
+    low = Held.of(length=length, pressure=pressure)
+
+    def holds(held: Held) -> bool:
+        seen = look(find(problem, held), held)
+        folded = seen.verdict.shape in (Shape.ROLLED_UP, Shape.SELF_CONTACT)  # another branch
+        return seen.good if shapes else seen.stiffness > 0.0 and not folded
+
+    if holds(low):
+        return pressure
+    for k in range(DOUBLINGS):
+        high = Held.of(length=length, pressure=pressure + 1e3 * 2.0**k)
+        if holds(high):
+            return float(branch_end(problem, high, low, tolerance, shapes).held.get("pressure"))
+    return float("nan")
+
+
+def working_range(muscle: Muscle, *, pressures: Any) -> xr.Dataset:
+    """The admissible region in the length-pressure plane: shortest, longest and force at the shortest, per pressure.
+
+    Args:
+        muscle: the specification.
+        pressures: a path such as "0 to 3 bar" (21 values) or a list.
+    """
+    step = Step(pressure=pressures, length=1.0)
+    path = Path.parse(pressures, "Pa")
+    found = [limits(muscle, pressure=float(P)) for P in path.sample(step.points)]
+    about = {"muscle": to_toml(muscle, allow_custom=True), "assumed": ", ".join(muscle.assumed)}
+    units = {"shortest": "m", "stable_down_to": "m", "longest": "m", "shortest_force": "N", "force_extremum": "N"}
+    variables = {
+        name: ("pressure", [getattr(one, name) for one in found], {"units": unit}) for name, unit in units.items()
+    }
+    causes = ("pressure", [one.shortest_cause for one in found])
+    pressure = ("pressure", [one.pressure for one in found], {"units": "Pa", "long_name": "gauge pressure"})
+    return xr.Dataset(variables | {"shortest_cause": causes}, {"pressure": pressure}, about)
