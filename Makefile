@@ -14,14 +14,15 @@ endif
 STAMP := $(VENV)/.mckibben-installed
 
 .DEFAULT_GOAL := help
-.PHONY: help setup demo test lint types docs examples bench lock clean
+.PHONY: help setup demo test lint types docs examples bench pictures lock clean
 
 help:
 	@echo "make setup      the virtual environment $(VENV), from requirements.lock"
 	@echo "make demo       the paper's tests and figures, into out/demo"
 	@echo "make test       the tests"
 	@echo "make lint       style;  make types  static types;  make docs  the documentation, into docs/_build/html"
-	@echo "make examples   every script of examples/;  make bench  the benchmarks"
+	@echo "make examples   every script of examples/;  make bench  the benchmarks, into out"
+	@echo "make pictures   the pictures of the README and the documentation, into docs/pictures"
 	@echo "make lock       renew requirements.lock from pyproject.toml;  make clean  delete what was built"
 
 setup: $(STAMP)
@@ -61,6 +62,9 @@ examples: setup
 
 bench: setup
 	$(BIN)/python benchmarks/run.py
+
+pictures: setup
+	$(BIN)/python docs/pictures.py
 
 # Pins stay as they are unless pyproject.toml rules them out; UPGRADE=--upgrade takes the newest of everything.
 lock: setup

@@ -23,6 +23,5 @@ def made(muscle: Muscle, test: Test, reached: int) -> Result:
         steps[name] = rng.integers(-1, 5, count)
     versions = {"mckibben": "0.1.0", "jax": "0.10"}
     warnings = ["neighbouring fibres touch", "and more"]
-    return Result(
-        muscle, test, dataset(steps, fields, v, about(muscle, test, versions, "2026-01-01T00:00:00", warnings, "incomplete"))
-    )
+    said = about(muscle, test, versions, "2026-01-01T00:00:00", warnings, "incomplete")
+    return Result(muscle, test, dataset(steps, fields, v, said))

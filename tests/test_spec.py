@@ -249,7 +249,8 @@ def test_replace():
     muscle = presets.paper()
     other = muscle.replace("braid.angle", "36 deg")
     assert other.braid.angle == math.radians(36)
-    assert other.replace("braid.angle", muscle.braid.angle) == muscle
+    assert other.name == "paper (changed)"
+    assert other.replace("braid.angle", muscle.braid.angle).replace("name", "paper") == muscle
     bare = muscle.replace("chamber", None)
     assert bare.chamber is None
     assert not any(name.startswith("chamber") for name in bare.assumed)

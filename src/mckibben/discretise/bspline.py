@@ -57,6 +57,10 @@ class Spline:
         """Free control points."""
         return self.size - 2 * self.held
 
+    def slope_factor(self, p: Parameters) -> Number:
+        """Small changes of psi over those of the first field, theta' (Eq. 12)."""
+        return -p.R0 * jnp.tan(p.theta0)
+
     def mesh(self, p: Parameters, b: Number) -> Mesh:
         """Operators on a muscle; b is not used: the paper's mesh is uniform."""
         x, w, basis = _operators(self)

@@ -54,6 +54,10 @@ class Line:
         """Whether equal end radii are a constraint; odd slopes have them anyway, free ends do not need them."""
         return self.modes == "all" and self.ends != "free"
 
+    def slope_factor(self, p: Parameters) -> Number:
+        """Small changes of psi over those of the first field: psi is the first field."""
+        return 1.0
+
     def mesh(self, p: Parameters, b: Number) -> Mesh:
         """Operators of the space on a muscle, with points crowded by b (0.5: nearly uniform)."""
         x, w, shape, slope, cumulate = _operators(self)

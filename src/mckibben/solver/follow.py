@@ -98,7 +98,7 @@ def follow(
     tolerance: Float[Array, ""],
 ) -> Track:
     """From a good state w at targets[0] through targets[1 .. count - 1]; the rest of the array is padding."""
-    n, psi = targets.shape[0], space.mesh(p, b).fields[:, 0]
+    n, psi = targets.shape[0], space.basis.slope_factor(p) * space.mesh(p, b).fields[:, 0]
     track = Track(
         jnp.zeros((n, w.shape[0])), jnp.zeros((n, 4)), jnp.full(n, jnp.inf), jnp.zeros(n, int), jnp.zeros((), int)
     )

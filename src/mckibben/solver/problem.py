@@ -93,7 +93,5 @@ class Problem:
     @property
     def slopes(self) -> tuple[np.ndarray, np.ndarray]:
         """Change of (psi, kappa) at the points by each unknown, about the cylinder."""
-        factor = 1.0
-        if isinstance(self.space.basis, Spline):  # psi = -R0 tan(theta0) theta' for small slopes
-            factor = -float(self.p.R0 * np.tan(self.p.theta0))
+        factor = float(self.space.basis.slope_factor(self.p))
         return factor * self.mesh.fields[:, 0], factor * self.mesh.fields[:, 1]

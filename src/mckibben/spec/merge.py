@@ -11,6 +11,7 @@ from collections.abc import Iterable, Mapping
 from typing import Any
 
 from mckibben.spec.errors import SpecError
+from mckibben.spec.muscle import CHANGED
 
 __all__ = ["apply_overrides", "merged"]
 
@@ -26,7 +27,14 @@ def merged(base: Mapping[Any, Any], over: Mapping[Any, Any]) -> dict[Any, Any]:
     if "assumed" not in over:
         left = [name for name in base.get("assumed", ()) if not any(_within(name, path) for path in touched)]
         result["assumed"] = left
+    if touched and "name" not in over and base.get("name"):
+        result["name"] = changed_name(base["name"])
     return result
+
+
+def changed_name(name: str) -> str:
+    """Name of a muscle that is no longer what its name says."""
+    return name if name.endswith(CHANGED) else name + CHANGED
 
 
 def _within(name: str, path: str) -> bool:

@@ -37,6 +37,9 @@ class AngleFrom(StrEnum):
     AXIS = "axis"
 
 
+CHANGED = " (changed)"
+"""Added to the name of a muscle that is no longer what its name says."""
+
 _ROUND = ("diameter", "E", "nu")
 _GIVEN = ("B1", "B2", "B3")
 _ENERGY = "Eqs. (20-28)"
@@ -183,7 +186,8 @@ class Muscle:
     def replace(self, field: str, value: Any) -> Muscle:
         """A new muscle with one field changed: muscle.replace("braid.angle", "36 deg").
 
-        The field, and all within it, leaves `assumed`. Raises SpecError for an unknown name or a value out of range.
+        The field, and all within it, leaves `assumed`; the name says that the muscle was changed. Raises SpecError for
+        an unknown name or a value out of range.
         """
         kept = tuple(name for name in self.assumed if name != field and not name.startswith(field + "."))
         # Names that would no longer exist must be gone before the new muscle is checked.
@@ -191,6 +195,8 @@ class Muscle:
         if field == "assumed":
             return changed
         left = {name for name, _, _ in walk(changed)}
+        if changed.name and field != "name" and not changed.name.endswith(CHANGED):
+            changed = evolved(changed, name=changed.name + CHANGED)
         return evolved(changed, assumed=tuple(name for name in kept if name in left))
 
 

@@ -1,0 +1,46 @@
+"""The pictures of the README and of the gallery: `make pictures`.
+
+They are those of `mckibben reproduce`, made small: at most 1000 pixels wide, line drawings with 256 colours.
+A folder made by that command may be given instead of making the pictures anew.
+"""
+
+import sys
+import tempfile
+from pathlib import Path
+
+from PIL import Image
+
+from mckibben.app.reproduce import PICTURES, reproduce
+
+HERE = Path(__file__).parent / "pictures"
+WIDEST = 1000
+"""Pixels."""
+SHADED = ("fig5_energy_density", "fig6_stiff_fibres")
+"""Pictures with colour scales, which a palette would falsify."""
+
+
+def shrink(source: Path, target: Path) -> None:
+    """A smaller copy."""
+    with Image.open(source) as picture:
+        flat = picture.convert("RGB")
+        flat.thumbnail((WIDEST, 2 * WIDEST), Image.Resampling.LANCZOS)
+        small = flat if source.stem in SHADED else flat.quantize(256, dither=Image.Dither.NONE)
+        small.save(target, optimize=True)
+
+
+def main(folder: Path) -> None:
+    """Every picture of the paper's figures from a folder into docs/pictures."""
+    HERE.mkdir(exist_ok=True)
+    for name in PICTURES:
+        target = HERE / f"{name}.png"
+        shrink(folder / target.name, target)
+        print(f"docs/pictures/{target.name}: {target.stat().st_size / 1000:.0f} kB")
+
+
+if __name__ == "__main__":
+    if len(sys.argv) > 1:
+        main(Path(sys.argv[1]))
+    else:
+        with tempfile.TemporaryDirectory() as made:
+            reproduce(made)
+            main(Path(made))

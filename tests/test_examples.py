@@ -1,0 +1,86 @@
+"""The examples as users run them, with the numbers of the theory page."""
+
+import re
+import runpy
+from pathlib import Path
+
+import numpy as np
+import pytest
+from typer.testing import CliRunner
+
+import mckibben as mk
+from mckibben.app.cli import app
+
+EXAMPLES = Path(__file__).parent.parent / "examples"
+CASES = sorted(EXAMPLES.glob("*.toml"))
+HALF_A_DIGIT = 6e-4
+"""The theory page has three decimals, of N and of mm."""
+
+
+def run(name: str) -> mk.Result:
+    case = mk.read_case(EXAMPLES / f"case_{name}.toml")
+    assert case.test is not None
+    result = mk.run(case.muscle, case.test)
+    assert set(result.verdict) == {"stable"}
+    return result
+
+
+@pytest.mark.parametrize("case", CASES, ids=lambda case: case.stem)
+def test_case_files_are_understood(case: Path) -> None:
+    done = CliRunner().invoke(app, ["check", str(case)])
+    assert done.exit_code == 0, done.output
+    assert "ASSUMED" in done.stdout
+
+
+def test_case_a() -> None:
+    result = run("a")
+    expected = [3.290, 22.978, 42.573, 62.138, 81.686, 101.221]  # 0, 0.2 ... 1 bar
+    np.testing.assert_allclose(result.force[::4], expected, rtol=0.0, atol=HALF_A_DIGIT)
+    last = result.data.isel(step=-1)
+    fibres = sum(float(last[f"energy_{part}"]) for part in ("bending_1", "bending_2", "twist"))
+    assert 1e3 * fibres == pytest.approx(8.65, abs=6e-3)
+    assert 1e3 * float(last["energy_chamber"]) == pytest.approx(29.36, abs=6e-3)
+
+
+def test_case_b() -> None:
+    expected = [-3.196, -11.941, -20.656, -29.348, -38.025, -46.689]
+    np.testing.assert_allclose(run("b").force[::4], expected, rtol=0.0, atol=HALF_A_DIGIT)
+
+
+@pytest.mark.parametrize(("name", "start", "change"), [("c", 0.115, -0.2872), ("d", 0.055, 0.4905)])
+def test_cases_c_and_d_end_in_the_same_state(name: str, start: float, change: float) -> None:
+    result = run(name)
+    held = result.length[result.data["protocol_step"].values == 0][-1]
+    assert held == pytest.approx(start, rel=1e-12)
+    assert result.force[-1] == pytest.approx(0.0, abs=1e-9)
+    assert 1e3 * result.length[-1] == pytest.approx(81.976, abs=HALF_A_DIGIT)
+    assert result.length[-1] / held - 1.0 == pytest.approx(change, abs=6e-5)
+
+
+def printed(
+    script: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> list[list[float]]:
+    """Numbers of the lines that an example prints, run where it may write."""
+    monkeypatch.chdir(tmp_path)
+    runpy.run_path(str(EXAMPLES / script), run_name="__main__")
+    lines = capsys.readouterr().out.splitlines()
+    return [[float(number) for number in re.findall(r"-?\d+(?:\.\d+)?", line)] for line in lines]
+
+
+def test_formula_or_model(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]) -> None:
+    rows = printed("formula_or_model.py", tmp_path, monkeypatch, capsys)[1:-1]
+    assert len(rows) == 7
+    assert rows[0] == pytest.approx([115.0, 101.22, 76.10], abs=0.011)
+    assert rows[-1] == pytest.approx([55.0, -46.69, -41.95], abs=0.011)
+    # at the length as made a braid under pressure is a cylinder, and both are the same
+    assert rows[3] == pytest.approx([85.0, 6.66, 6.66], abs=0.011)
+
+
+@pytest.mark.filterwarnings("ignore::mckibben.MuscleWarning")  # compressed states of a slender muscle are in the curve
+def test_plot_force_contraction(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    rows = printed("plot_force_contraction.py", tmp_path, monkeypatch, capsys)[1:4]
+    expected = [[1.0, 102.80, 25.01], [2.0, 205.60, 30.26], [3.0, 308.39, 32.09]]
+    assert [row[:1] + row[-2:] for row in rows] == [pytest.approx(row, abs=0.011) for row in expected]
+    assert (tmp_path / "out" / "force_contraction.png").stat().st_size > 10_000
