@@ -4,6 +4,7 @@ They are those of `mckibben reproduce`, made small: at most 1000 pixels wide, li
 A folder made by that command may be given instead of making the pictures anew.
 """
 
+import runpy
 import sys
 import tempfile
 from pathlib import Path
@@ -28,6 +29,13 @@ def shrink(source: Path, target: Path) -> None:
         small.save(target, optimize=True)
 
 
+def working_range() -> None:
+    """The picture that examples/working_range.py makes."""
+    made = Path("out") / "working_range.png"
+    runpy.run_path(str(HERE.parent.parent / "examples" / "working_range.py"), run_name="__main__")
+    shrink(made, HERE / made.name)
+
+
 def main(folder: Path) -> None:
     """Every picture of the paper's figures from a folder into docs/pictures."""
     HERE.mkdir(exist_ok=True)
@@ -38,6 +46,7 @@ def main(folder: Path) -> None:
 
 
 if __name__ == "__main__":
+    working_range()
     if len(sys.argv) > 1:
         main(Path(sys.argv[1]))
     else:

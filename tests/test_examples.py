@@ -84,3 +84,13 @@ def test_plot_force_contraction(
     expected = [[1.0, 102.80, 25.01], [2.0, 205.60, 30.26], [3.0, 308.39, 32.09]]
     assert [row[:1] + row[-2:] for row in rows] == [pytest.approx(row, abs=0.011) for row in expected]
     assert (tmp_path / "out" / "force_contraction.png").stat().st_size > 10_000
+
+
+def test_working_range(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]) -> None:
+    rows = printed("working_range.py", tmp_path, monkeypatch, capsys)
+    # without pressure and at 0.2 bar: the limits of the reference cases; full extension is on the theory page
+    assert rows[0] == pytest.approx([0.0, 62.50, 128.78], abs=0.006)
+    assert rows[1] == pytest.approx([0.2, 57.40, 128.78], abs=0.006)
+    assert len(rows) == 6
+    assert (tmp_path / "out" / "working_range.png").stat().st_size > 10_000
+    assert (tmp_path / "out" / "force_map.png").stat().st_size > 10_000
