@@ -10,7 +10,6 @@ from .solver.problem import LENGTH, VOLUME, Problem
 from .solver.stability import Modes, count_modes, stiffness
 from .solver.trust import imbalance
 
-
 ROUNDING = 1e-13
 """Relative error that rounding leaves in a force or length at best."""
 
