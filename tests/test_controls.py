@@ -111,3 +111,17 @@ def test_cautions_say_where_they_begin():
     long = mk.solve(REFERENCE.replace("braid.length", "300 mm"), length="275 mm", pressure="1 bar")
     assert any("column" in note for note in long.cautions)
     assert mk.solve(REFERENCE, length="85 mm", pressure="1 bar").cautions == ()
+
+
+def test_cautions_before_anything_is_solved():
+    assert mk.cautions(REFERENCE, length="85 mm", pressure="1 bar") == ()
+    weak = REFERENCE.replace("braid.fibre.breaking_force", "2 N").replace("chamber.thickness", "4 mm")
+    weak = weak.replace("braid.fibre.diameter", "1.6 mm")
+    said = " ".join(mk.cautions(weak, length="115 mm", pressure="1 bar"))
+    assert "thin" in said
+    assert "breaking force of 2 N" in said
+    assert "jams" in " ".join(mk.cautions(weak, length="65 mm", pressure="1 bar"))
+    long = REFERENCE.replace("braid.length", "300 mm")
+    assert "column" in " ".join(mk.cautions(long, length="270 mm", pressure="1 bar"))
+    with pytest.raises(mk.SpecError, match="one value"):
+        mk.cautions(REFERENCE, length="85 to 90 mm", pressure="1 bar")

@@ -12,6 +12,7 @@ _PUBLIC = {
     "mckibben.experiment": ("run", "MuscleWarning"),
     "mckibben.seek": ("solve",),
     "mckibben.reach": ("Limits", "least_pressure", "limits", "working_range"),
+    "mckibben.caution": ("cautions",),
     "mckibben.datasheet": ("force_map",),
     "mckibben.view.curves": ("plot",),
     "mckibben.result": ("Result", "State"),

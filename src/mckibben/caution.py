@@ -2,12 +2,16 @@
 
 from typing import Any
 
+import jax
+import jax.numpy as jnp
 import numpy as np
 
 from .model.chamber import law_of
+from .model.cylinder import cylinder_angle, cylinder_force
+from .model.kinematics import radius, stretches
 from .model.parameters import parameters
 from .model.wrinkling import wrinkling
-from .spec import Muscle
+from .spec import Muscle, SpecError, Step
 from .units import show
 
 THICK_WALL = 0.2
@@ -18,8 +22,32 @@ SLENDER = 5.0
 Columns = dict[str, np.ndarray]
 
 
+def cautions(muscle: Muscle, *, length: Any, pressure: Any) -> tuple[str, ...]:
+    """Cautions about a target before anything is solved, judged by the uniform cylinder of the target length.
+
+    Thick wall, wrinkling, jammed fibres, a column in compression, and fibre tension above the breaking force if one is
+    given. Length and gauge pressure as text with a unit or in SI. A result carries the cautions of its own states.
+
+    Raises:
+        SpecError: for a length or pressure that is not one value in range.
+    """
+    step = Step(length=length, pressure=pressure)
+    if step.points != 1 or any(getattr(step, name).needs_present for name in step.controls):
+        raise SpecError("cautions", allowed="length and pressure must be one value each")
+    h, P = (float(getattr(step, name).waypoints[0]) for name in ("length", "pressure"))
+    p, law = parameters(muscle), law_of(muscle)
+    theta = cylinder_angle(h, p)
+    r, force = radius(theta, p), cylinder_force(theta, P, p, law)
+    hoop, axial, _ = stretches(theta, p)
+    chamber = p.A0 * jax.grad(lambda a: law(hoop, a, 1.0 / (hoop * a), p.law))(axial)
+    pull = (force + jnp.pi * r**2 * P - chamber) / (p.N * jnp.sin(theta))
+    steps = {name: np.array([float(value)]) for name, value in (("length", h), ("pressure", P), ("force", force))}
+    fields = {name: np.array([[float(value)]]) for name, value in (("theta", theta), ("r", r), ("fibre_tension", pull))}
+    return (*before(muscle, h, P), *after(muscle, steps, fields))
+
+
 def before(muscle: Muscle, length: float | None, pressure: float) -> list[str]:
-    """Cautions that need no solution: wall thickness, and wrinkling of the cylinder of the target length [m]."""
+    """Cautions that a result cannot tell: wall thickness, and wrinkling of the cylinder of the target length [m]."""
     notes = thick_wall(muscle)
     if length is not None:
         p, law = parameters(muscle), law_of(muscle)
