@@ -58,4 +58,4 @@ def test_the_papers_mesh_does_not_resolve_a_thin_end_layer() -> None:
     coarse, exact = state(REFERENCE, 0.115, 43, 0.0, "paper"), state(REFERENCE, 0.115, 24)
     error = abs(coarse.force / exact.force - 1.0)
     assert error == pytest.approx(0.0088181, rel=1e-4)
-    assert error < estimate(coarse) < 0.015
+    assert error < estimate(coarse) < 0.05

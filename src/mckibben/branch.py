@@ -95,7 +95,7 @@ def branch_end(problem: Problem, start: Held, target: Held, tolerance: float = 1
     here, done = walk.trial(0.0, None), 0.0
     if not walk.good(here):
         return BranchEnd(None, start, 0.0, here.verdict)
-    step, cause = 1.0 / STEPS, here.verdict
+    step, cause, first = 1.0 / STEPS, here.verdict, here
     while done < 1.0:
         fraction = min(1.0, done + step)
         seen = walk.trial(fraction, here)
@@ -108,8 +108,18 @@ def branch_end(problem: Problem, start: Held, target: Held, tolerance: float = 1
             return _root(walk, here, done, seen, fraction, tolerance)
         step *= 0.5
         if step < tolerance:
-            return BranchEnd(here, walk.at(done), done, cause)
+            return BranchEnd(here, walk.at(done), done, _turned(walk, here, first, cause))
     return BranchEnd(here, target, 1.0, here.verdict)
+
+
+def _turned(walk: _Walk, here: Look, first: Look, cause: Judgement) -> Judgement:
+    """What ended a path with nothing near beyond its last state: a branch that turns back, if it has gone soft."""
+    if here.stiffness > 1e-2 * first.stiffness:
+        return cause
+    control = "length" if "length" in walk.start.names else "force"
+    return Judgement(
+        Verdict.UNSTABLE, f"the shape gives way under {control} control: the branch turns back", here.verdict.shape
+    )
 
 
 def _root(walk: _Walk, here: Look, done: float, bad: Look, beyond: float, tolerance: float) -> BranchEnd:

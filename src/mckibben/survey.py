@@ -10,7 +10,7 @@ from .solver.problem import LENGTH, VOLUME, Problem
 from .solver.stability import Modes, count_modes, stiffness
 from .solver.trust import imbalance
 
-ROUNDING = 1e-13
+ROUNDING = 1e-11
 """Relative error that rounding leaves in a force or length at best."""
 
 
@@ -78,9 +78,9 @@ def meridian(problem: Problem, u: np.ndarray, count: int = 1001) -> tuple[np.nda
 
 
 def error_estimate(recovered: Recovered) -> np.ndarray:
-    """Relative error of force and length to expect: the smaller of two bounds that held on every reference state.
+    """Relative error of force and length to expect: the smaller of two bounds that hold on random muscles.
 
-    The variation of the conserved quantity was never below the true error. The tail of the coefficients enters the
-    energy squared; near an instability the force follows less well, hence the power 1.5. Rounding leaves 1e-13.
+    In validation/ the variation of the conserved quantity fell short of the true error by 2.5 at most. The tail of the
+    coefficients enters the energy squared; near an instability the force follows less well, hence the power 1.5.
     """
-    return np.maximum(np.minimum(recovered.conserved_variation, recovered.coefficient_tail**1.5), ROUNDING)
+    return np.maximum(np.minimum(3.0 * recovered.conserved_variation, recovered.coefficient_tail**1.5), ROUNDING)

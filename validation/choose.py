@@ -1,0 +1,69 @@
+"""The fixed subset of the random targets that the tests solve: tests/data/random_targets.json.
+
+    python validation/choose.py
+
+Stable states spread over the set, the ones with the largest error estimates, some that tip to one side (those where a
+judge knows a stable state first), and the quickest without a good state. Forces and lengths are those of 144 unknowns.
+"""
+
+import json
+from typing import Any
+
+from environment import ROOT
+from judges import placement
+from random_muscles import done
+from sample import muscle_of
+from summary import missed
+
+from mckibben.experiment import Bench
+from mckibben.solver.direct import find
+from mckibben.solver.equilibrium import Held
+
+FILE = ROOT / "tests" / "data" / "random_targets.json"
+FINEST = 144
+EVEN, HARD, TIPPING, LOST = 25, 8, 3, 4
+"""How many of each sort."""
+
+
+def chosen(rows: list[dict[str, Any]]) -> list[dict[str, Any]]:
+    """Rows of the subset."""
+    by = {word: [row for row in rows if row["found"]["verdict"] == word] for word in ("stable", "unstable")}
+    lost = sorted((row for row in rows if "last_good" in row["found"]), key=lambda row: row["found"]["seconds"])
+    behind = [row for row in lost if "fitting" in row["found"]["reason"]][:1]
+    tipping = sorted(by["unstable"], key=lambda row: row["case"]["id"] not in ids(missed(rows, "stable")))
+    hard = sorted(by["stable"], key=lambda row: -row["found"]["error_estimate"])[:HARD]
+    rest = [row for row in by["stable"] if row not in hard]
+    even = rest[:: len(rest) // EVEN][:EVEN]
+    return [*even, *hard, *tipping[:TIPPING], *lost[: LOST - 1], *behind]
+
+
+def ids(rows: list[dict[str, Any]]) -> set[int]:
+    """Numbers of cases."""
+    return {row["case"]["id"] for row in rows}
+
+
+def entry(row: dict[str, Any]) -> dict[str, Any]:
+    """One target with what is expected of it."""
+    case, found = row["case"], row["found"]
+    held = Held.of(**case["held"])
+    expected: dict[str, Any] = {"verdict": found["verdict"]}
+    if "last_good" in found:
+        expected["last_good"] = {name: found["last_good"][name] for name in ("length", "force")}
+    else:
+        bench = Bench.of(muscle_of(case))
+        fine = find(bench.problem(FINEST, placement(bench, held)), held)
+        assert fine.converged, case["id"]
+        expected |= {"force": fine.force, "length": fine.length, "volume": fine.volume}
+    return {**{name: case[name] for name in ("id", "ends", "kind", "muscle", "held")}, "expected": expected}
+
+
+def main() -> None:
+    entries = [entry(row) for row in chosen([row for _, row in sorted(done().items())])]
+    lines = ",\n  ".join(json.dumps(one) for one in entries)
+    note = "Written by validation/choose.py: random muscles and targets, SI units, states on 144 unknowns."
+    FILE.write_text(f'{{"note": "{note}",\n "targets": [\n  {lines}\n]}}\n', encoding="utf-8")
+    print(len(entries), "targets in", FILE.relative_to(ROOT))
+
+
+if __name__ == "__main__":
+    main()

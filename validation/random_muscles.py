@@ -1,0 +1,150 @@
+"""The default call on 1,000 random muscles: how often it reaches what can be reached, and whether it ever misleads.
+
+    python validation/random_muscles.py [--count 1000] [--workers 2] [--report-only]
+
+Results go line by line to out/random_muscles.jsonl; a run that was cut short goes on where it stopped. The report is
+validation/README.md and validation/random_muscles.png.
+"""
+
+import argparse
+import json
+import multiprocessing
+import time
+from collections.abc import Callable
+from concurrent.futures import ProcessPoolExecutor, as_completed
+from pathlib import Path
+from typing import Any
+
+from environment import OUT
+from judges import judge_target, placement, worth_of
+from sample import Case, draw, muscle_of
+
+import mckibben as mk
+from mckibben.experiment import Bench
+from mckibben.solver.direct import find
+from mckibben.solver.equilibrium import Held
+
+LINES, JUDGED = OUT / "random_muscles.jsonl", OUT / "random_muscles_judged.jsonl"
+NUMBERS = ("force", "length", "volume", "error_estimate", "residual", "coefficient_tail", "conserved_variation")
+
+
+def warm() -> None:
+    """Compile everything a solve may need, so that the times are those of solving."""
+    for ends in ("clamped", "pinned"):
+        muscle = mk.presets.reference().replace("ends", ends)
+        bench = Bench.of(muscle)
+        for size in (24, 48, 96):
+            find(bench.problem(size, 2.0), Held.of(length=0.1, pressure=1e5))
+        for length in (0.1, 0.0505, 0.0443, 0.04):
+            mk.solve(muscle, length=length, pressure=1e5)
+            mk.solve(muscle, length=length, pressure=1e5, tolerance=1e-10)
+
+
+def one(case: Case) -> dict[str, Any]:
+    """The default call on one case."""
+    muscle, bench, held = muscle_of(case), Bench.of(muscle_of(case)), Held.of(**case["held"])
+    start = time.perf_counter()
+    state = mk.solve(muscle, **case["held"])
+    found: dict[str, Any] = {"seconds": time.perf_counter() - start}
+    found |= {"verdict": str(state.verdict), "reason": state.reason, "shape": str(state.data["shape"].values)}
+    found |= {name: float(state.data[name].values) for name in NUMBERS}
+    found["miss"] = max(abs(getattr(state, k) - v) / max(abs(v), 1.0 if k == "force" else 0.0) for k, v in pairs(held))
+    found["modes"] = None if state.modes is None else [state.modes.length_control, state.modes.force_control,
+                                                       state.modes.antisymmetric]  # fmt: skip
+    if state.last_good is not None:
+        found["last_good"] = last_good(bench, case, state.last_good)
+    return {"case": case, "found": found}
+
+
+def judged(case: Case) -> dict[str, Any]:
+    """What the other methods make of a case."""
+    return {"case": case, "judges": judge_target(Bench.of(muscle_of(case)), Held.of(**case["held"]), case["id"])}
+
+
+def pairs(held: Held) -> list[tuple[str, float]]:
+    """Held names with values; pressure last and not zero, so that a relative miss can be said."""
+    return [(name, value) for name, value in zip(held.names, held.values, strict=True) if name != "pressure" or value]
+
+
+def is_reached(row: dict[str, Any]) -> bool:
+    """Whether the default call gave a state that is stable in its symmetric modes and admissible."""
+    found = row["found"]
+    if found["verdict"] == "unstable":
+        return bool(found["modes"]["length" not in row["case"]["held"]] == 0)
+    return bool(found["verdict"] == "stable")
+
+
+def last_good(bench: Bench, case: Case, last: Any) -> dict[str, Any]:
+    """The last good state, and what a fresh search on twice the unknowns says at the same place."""
+    axial = "length" if "length" in case["held"] else "force"
+    held = Held.of(**{axial: getattr(last, axial), "pressure": last.pressure})
+    again = find(bench.problem(96, placement(bench, held)), held)
+    size = max(abs(last.force), 1.0) if axial == "length" else last.length
+    other = "force" if axial == "length" else "length"
+    return {
+        "verdict": str(last.verdict), "length": last.length, "force": last.force, "pressure": last.pressure,
+        "residual": float(last.data["residual"].values), "error_estimate": last.error_estimate,
+        "again": worth_of(again, held), "difference": abs(getattr(again, other) - getattr(last, other)) / size,
+    }  # fmt: skip
+
+
+def safely(case: Case) -> dict[str, Any]:
+    """A crash is a finding, not the end of the run."""
+    try:
+        return one(case)
+    except Exception as error:
+        return {"case": case, "found": {"verdict": "crash", "reason": repr(error)}}
+
+
+def read(file: Path) -> dict[int, dict[str, Any]]:
+    """Lines so far, by case."""
+    if not file.exists():
+        return {}
+    rows = [json.loads(line) for line in file.read_text(encoding="utf-8").splitlines() if line.endswith("}")]
+    return {row["case"]["id"]: row for row in rows}
+
+
+def done() -> dict[int, dict[str, Any]]:
+    """Results so far, with the judges' word where they were asked."""
+    rows, judges = read(LINES), read(JUDGED)
+    for k in rows.keys() & judges.keys():
+        rows[k]["judges"] = judges[k]["judges"]
+    return rows
+
+
+def write_lines(task: Callable[[Case], dict[str, Any]], cases: list[Case], file: Path, workers: int) -> None:
+    """The task on every case that is not yet in the file."""
+    known = read(file)
+    left = [case for case in cases if case["id"] not in known]
+    if not left:
+        return
+    spawn = multiprocessing.get_context("spawn")
+    with ProcessPoolExecutor(workers, spawn, initializer=warm) as pool, file.open("a", encoding="utf-8") as lines:
+        for job in as_completed([pool.submit(task, case) for case in left]):
+            lines.write(json.dumps(job.result()) + "\n")
+            lines.flush()
+
+
+def run(count: int, workers: int) -> None:
+    """The default call on everything; then the judges wherever it gave no stable state."""
+    OUT.mkdir(exist_ok=True)
+    write_lines(safely, [draw(k) for k in range(count)], LINES, workers)
+    lost = [row["case"] for _, row in sorted(read(LINES).items()) if row["found"]["verdict"] != "stable"]
+    write_lines(judged, lost, JUDGED, workers)
+
+
+def main() -> None:
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument("--count", type=int, default=1000)
+    parser.add_argument("--workers", type=int, default=2)
+    parser.add_argument("--report-only", action="store_true")
+    asked = parser.parse_args()
+    if not asked.report_only:
+        run(asked.count, asked.workers)
+    from summary import write
+
+    write([row for k, row in sorted(done().items()) if k < asked.count])
+
+
+if __name__ == "__main__":
+    main()
