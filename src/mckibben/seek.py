@@ -26,7 +26,7 @@ NEAR_EXTENSION = 0.98
 
 
 FULL_LENGTH = 96
-"""Unknowns of asymmetric states, odd and even modes together."""
+"""Unknowns of asymmetric states, odd and even modes together; twice as many where the tolerance needs them."""
 
 
 def solve(
@@ -71,7 +71,7 @@ def _state(bench: Bench, muscle: Muscle, step: Step, held: Held, tolerance: floa
     if found.verdict.verdict == Verdict.STABLE:
         return _made(bench, muscle, step, held, found)
     if found.verdict.verdict == Verdict.UNSTABLE:
-        return _unstable(bench, muscle, step, held, found)
+        return _unstable(bench, muscle, step, held, found, tolerance)
     return _instead(bench, muscle, step, held, found)
 
 
@@ -141,10 +141,10 @@ def _nothing(bench: Bench, muscle: Muscle, step: Step, held: Held, verdict: Verd
     return State(result, verdict, reason, None, **more)
 
 
-def _unstable(bench: Bench, muscle: Muscle, step: Step, held: Held, found: Look) -> State:
+def _unstable(bench: Bench, muscle: Muscle, step: Step, held: Held, found: Look, tolerance: float) -> State:
     """A symmetric state that tips to one side: also the asymmetric state that it goes to."""
     reason, other = found.verdict.reason, None
-    tipped = tip(bench, found, held)
+    tipped = tip(bench, found, held, tolerance)
     if tipped is not None and tipped.good:
         other = _made(bench, muscle, step, held, tipped)
         reason += f"; the stable asymmetric state carries {show(tipped.state.force, 'N', 6)}"
@@ -153,7 +153,7 @@ def _unstable(bench: Bench, muscle: Muscle, step: Step, held: Held, found: Look)
     return _made(bench, muscle, step, held, found, reason=reason, asymmetric=other)
 
 
-def tip(bench: Bench, found: Look, held: Held) -> Look | None:
+def tip(bench: Bench, found: Look, held: Held, tolerance: float) -> Look | None:
     """The state that an antisymmetrically unstable one goes to, on the full length; None if it has no such mode."""
     state = found.state
     basis = state.problem.space.basis
@@ -169,7 +169,11 @@ def tip(bench: Bench, found: Look, held: Held) -> Look | None:
     u[1::2][:shared], kick[0::2][:shared] = state.u[:shared], mode[:shared]
     slope = float(np.abs(problem.slopes[0] @ kick).max())
     start = attrs.evolve(state, problem=problem, u=u + 0.1 * kick / slope)
-    return look(find(problem, held, start, radius=0.3), held)
+    tipped = find(problem, held, start, radius=0.3)
+    if tipped.converged and _error(tipped) > tolerance:
+        finer = refine(tipped, bench.problem(2 * FULL_LENGTH, b, modes="all"), held)
+        tipped = finer if finer.converged else tipped
+    return look(tipped, held)
 
 
 def _instead(bench: Bench, muscle: Muscle, step: Step, held: Held, found: Look) -> State:

@@ -9,6 +9,7 @@ from typing import Any
 from mckibben import presets
 from mckibben.spec import Muscle, Test, walk
 from mckibben.spec.declared import Declared
+from mckibben.spec.muscle import CHANGED
 from mckibben.units import show, to_si
 
 __all__ = ["beyond", "case_text", "derived", "muscle_rows", "numbered", "test_rows"]
@@ -50,11 +51,12 @@ def _first(law: Any) -> str:
 def _origins(muscle: Muscle) -> dict[str, str]:
     """Where values come from: the sources of the preset of that name where they agree with it, and what is assumed."""
     known: dict[str, str] = {}
-    if muscle.name in presets.names():
-        same = {name: value for name, _, value in walk(presets.get(muscle.name))}
+    preset = (muscle.name or "").removesuffix(CHANGED)
+    if preset in presets.names():
+        same = {name: value for name, _, value in walk(presets.get(preset))}
         for name, _, value in walk(muscle):
             if name in same and same[name] == value:
-                known[name] = presets.sources(muscle.name).get(name, "")
+                known[name] = presets.sources(preset).get(name, "")
     for name in muscle.assumed:
         known[name] = f"{ASSUMED}: {known[name].removeprefix('assumed: ')}" if name in known else ASSUMED
     return known

@@ -37,11 +37,7 @@ class Parameters(NamedTuple):
 def parameters(muscle: "spec.Muscle") -> Parameters:
     """Numbers of a muscle; differentiable with respect to every number of its specification."""
     braid, fibre, chamber = muscle.braid, muscle.braid.fibre, muscle.chamber
-    if fibre.B1 is not None:
-        B1, B2, B3 = fibre.B1, fibre.B2, fibre.B3
-    else:  # round solid fibre: second moment pi d^4/64, torsion constant pi d^4/32
-        B1 = B2 = fibre.E * jnp.pi * fibre.diameter**4 / 64.0
-        B3 = fibre.E / (2.0 * (1.0 + fibre.nu)) * jnp.pi * fibre.diameter**4 / 32.0
+    B1, B2, B3 = fibre.stiffnesses
     thickness = 0.0 if chamber is None else chamber.thickness
     numbers = Parameters(
         braid.radius, braid.length, braid.angle, braid.fibres, B1, B2, B3,
