@@ -28,12 +28,14 @@ help:
 setup: $(STAMP)
 
 # The stamp is older than the lock or pyproject.toml after either changes: then everything is installed again.
-# Dependencies come from the lock only, so the package itself is installed without them.
+# Dependencies come from the lock only, so the package itself is installed without them. Bytecode is made here because
+# pip leaves it out where PYTHONDONTWRITEBYTECODE is set, and every start would then compile some 2,000 files.
 $(STAMP): requirements.lock pyproject.toml
 	@$(PYTHON) -c "import sys; v = sys.version_info; sys.exit(0 if v >= (3, 11) else 'mckibben needs Python 3.11 or later and $(PYTHON) is %d.%d: make PYTHON=/path/to/python3.11' % v[:2])"
 	$(PYTHON) -m venv $(VENV)
 	$(BIN)/python -m pip install --disable-pip-version-check --quiet -r requirements.lock
 	$(BIN)/python -m pip install --disable-pip-version-check --quiet --no-deps -e .
+	$(BIN)/python -m compileall -q -j 0 $(VENV)
 	@touch $@
 
 demo: setup
