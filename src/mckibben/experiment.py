@@ -115,17 +115,19 @@ def run(
 
 def _crowding(bench: Bench, steps: tuple[Step, ...]) -> float:
     """Point placement that serves the whole test."""
-    rows: list[tuple[float, float, float]] = []
-    for step in steps:
-        known = {name: np.asarray(getattr(step, name).waypoints, float) for name in step.controls}
-        known = {name: values for name, values in known.items() if len(values)}
-        lengths = np.minimum(known.get("length", np.full(1, np.nan)), 0.999 * bench.longest)
-        forces, pressures = known.get("force", np.full(1, np.nan)), known.get("pressure", np.zeros(1))
-        if np.isnan(lengths).all() and np.isnan(forces).all():
-            lengths = np.array([float(bench.p.H0)])
-        rows += [(h, F, P) for h in lengths for F in forces for P in pressures]
-    length, force, pressure = np.array(rows).T
-    return crowding(bench.law, bench.p, length, force, pressure)
+    rows = [row for step in steps for row in corners(step, float(bench.p.H0), 0.999 * bench.longest)]
+    return crowding(bench.law, bench.p, *np.array(rows).T)
+
+
+def corners(step: Step, H0: float, longest: float) -> list[tuple[float, float, float]]:
+    """(length, force, pressure) at the ends of what a step holds; NaN for a length or force that is not held."""
+    known = {name: np.asarray(getattr(step, name).waypoints, float) for name in step.controls}
+    known = {name: values for name, values in known.items() if len(values)}
+    lengths = np.minimum(known.get("length", np.full(1, np.nan)), longest)
+    forces, pressures = known.get("force", np.full(1, np.nan)), known.get("pressure", np.zeros(1))
+    if np.isnan(lengths).all() and np.isnan(forces).all():
+        lengths = np.array([H0])
+    return [(h, F, P) for h in lengths for F in forces for P in pressures]
 
 
 def _follow(

@@ -17,6 +17,7 @@ import jax.numpy as jnp
 import numpy as np
 from jaxtyping import Array, Float
 
+from .model.angle import cos, sin, slope
 from .model.chamber import chamber_density
 from .model.energy import stored
 from .model.fibres import fibre_densities
@@ -43,14 +44,23 @@ def tension(
     theta: Number, psi: Number, kappa: Number, costate: Number, F: Number, P: Number, p: Parameters, law: Law
 ) -> Number:
     """Tension T [N] of one fibre, the multiplier of inextensibility."""
-    sine, cosine = jnp.sin(p.theta0), jnp.cos(p.theta0)
+    sine, cosine = sin(p.theta0), cos(p.theta0)
     u1 = fibre_strains(theta, psi, kappa, p)[0]
-    by_rate, by_rate_dv = p.N * p.B1 * u1, -2.0 * p.N * p.B1 * cosine / p.R0 * jnp.cos(psi) * kappa
-    by_theta = jax.grad(lambda t: sum(fibre_densities(t, psi, kappa, p)))(theta)
-    q = -(costate - by_rate) * cosine / (p.R0 * jnp.sin(theta))
+    by_rate, by_rate_dv = p.N * p.B1 * u1, -2.0 * p.N * p.B1 * cosine / p.R0 * cos(psi) * kappa
+    by_theta = slope(lambda t: sum(fibre_densities(t, psi, kappa, p)), theta)
+    q = -(costate - by_rate) * cosine / (p.R0 * sin(theta))
     axial = F + jnp.pi * radius(theta, p) ** 2 * P
-    along = axial * jnp.cos(psi) + q * jnp.sin(psi) - chamber_pull(theta, p, law)
-    return (along - (by_theta - by_rate_dv) * sine * jnp.cos(theta)) / (p.N * jnp.sin(theta))
+    along = axial * cos(psi) + q * sin(psi) - chamber_pull(theta, p, law)
+    return (along - (by_theta - by_rate_dv) * sine * cos(theta)) / (p.N * sin(theta))
+
+
+def conserved(
+    theta: Number, psi: Number, kappa: Number, costate: Number, F: Number, P: Number, p: Parameters, law: Law
+) -> tuple[Number, Number]:
+    """p theta' + kappa dL/dkappa - L [J/m], the same all along the length, and the sum of its terms' magnitudes."""
+    by_kappa = jax.grad(_lagrangian, argnums=2)(theta, psi, kappa, F, P, p, law)
+    parts = (costate * angle_rate(psi, p), kappa * by_kappa, -_lagrangian(theta, psi, kappa, F, P, p, law))
+    return sum(parts), jnp.abs(parts[0]) + jnp.abs(parts[1]) + jnp.abs(parts[2])
 
 
 def chamber_pull(theta: Number, p: Parameters, law: Law) -> Number:
@@ -65,8 +75,7 @@ def _fields(
     bending1, bending2, twist = fibre_densities(theta, psi, kappa, p)
     hoop, axial, thickness = stretches(theta, p)
     u1, u2, u3 = fibre_strains(theta, psi, kappa, p)
-    by_kappa = jax.grad(_lagrangian, argnums=2)(theta, psi, kappa, F, P, p, law)
-    parts = (costate * angle_rate(psi, p), kappa * by_kappa, -_lagrangian(theta, psi, kappa, F, P, p, law))
+    kept, size = conserved(theta, psi, kappa, costate, F, P, p, law)
     chamber_axial = chamber_pull(theta, p, law) * jnp.cos(psi)
     total_axial = F + jnp.pi * radius(theta, p) ** 2 * P
     return {
@@ -77,7 +86,7 @@ def _fields(
         "density_fibres": bending1 + bending2 + twist, "density_chamber": chamber_density(theta, p, law),
         "fibre_tension": tension(theta, psi, kappa, costate, F, P, p, law),
         "share_chamber": chamber_axial / total_axial, "share_mesh": 1.0 - chamber_axial / total_axial,
-        "conserved": sum(parts), "conserved_size": jnp.abs(parts[0]) + jnp.abs(parts[1]) + jnp.abs(parts[2]),
+        "conserved": kept, "conserved_size": size,
         "height_rate": height_rate(theta, psi, p),
     }  # fmt: skip
 

@@ -78,9 +78,14 @@ def meridian(problem: Problem, u: np.ndarray, count: int = 1001) -> tuple[np.nda
 
 
 def error_estimate(recovered: Recovered) -> np.ndarray:
-    """Relative error of force and length to expect: the smaller of two bounds that hold on random muscles.
+    """Relative error of force and length to expect of each state."""
+    return error_of(recovered.conserved_variation, recovered.coefficient_tail)
+
+
+def error_of(conserved_variation: np.ndarray, coefficient_tail: np.ndarray) -> np.ndarray:
+    """The smaller of two bounds that hold on random muscles.
 
     In validation/ the variation of the conserved quantity fell short of the true error by 2.5 at most. The tail of the
     coefficients enters the energy squared; near an instability the force follows less well, hence the power 1.5.
     """
-    return np.maximum(np.minimum(3.0 * recovered.conserved_variation, recovered.coefficient_tail**1.5), ROUNDING)
+    return np.maximum(np.minimum(3.0 * conserved_variation, coefficient_tail**1.5), ROUNDING)

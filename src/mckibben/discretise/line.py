@@ -54,6 +54,18 @@ class Line:
         """Whether equal end radii are a constraint; odd slopes have them anyway, free ends do not need them."""
         return self.modes == "all" and self.ends != "free"
 
+    def constants(self) -> "Constants":
+        """Operators in the mapped coordinate x, which are the same for every muscle."""
+        return _operators(self)
+
+    def sampling(self, count: int) -> "Sampling":
+        """The space at `count` points uniform in x over the full length."""
+        return _sampling(self, count)
+
+    def jacobian(self, p: Parameters, b: Number) -> Any:
+        """dv/dx [m] at the mesh's points."""
+        return stretch(_operators(self).x, p, b)
+
     def slope_factor(self, p: Parameters) -> Number:
         """Small changes of psi over those of the first field: psi is the first field."""
         return 1.0
@@ -61,7 +73,7 @@ class Line:
     def mesh(self, p: Parameters, b: Number) -> Mesh:
         """Operators of the space on a muscle, with points crowded by b (0.5: nearly uniform)."""
         x, w, shape, slope, cumulate = _operators(self)
-        jac = _stretch(x, p, b)
+        jac = self.jacobian(p, b)
         fields = jnp.stack([jnp.asarray(shape), slope / jac[:, None]], axis=1)
         free = jnp.zeros((len(x), self.unknowns))
         if self.ends == "free":
@@ -80,34 +92,40 @@ class Line:
         Symmetric spaces are mirrored onto the other half.
         """
         at, c = _sampling(self, count), np.asarray(u)[:, : self.size]
-        rate = np.asarray(angle_rate(c @ _operators(self)[2].T, p))
+        rate = np.asarray(angle_rate(c @ _operators(self).shape.T, p))
         start = float(p.theta0) + (u[:, -1:] if self.ends == "free" else 0.0)
-        theta = start + (rate * self._jacobian(p, b)) @ at.odd_integral.T
-        return theta, c @ at.shape.T, c @ at.slope.T / np.asarray(_stretch(at.x, p, b))
+        theta = start + (rate * np.asarray(self.jacobian(p, b))) @ at.odd_integral.T
+        return theta, c @ at.shape.T, c @ at.slope.T / np.asarray(stretch(at.x, p, b))
 
     def integral(self, p: Parameters, b: float, values: Floats, count: int | None = None) -> Floats:
         """Integral from v = 0 to the nodes (or the mesh's points) of fields given at the mesh's points (steps, points).
 
         On the half line a field goes on as its mirror image.
         """
-        return np.asarray((values * self._jacobian(p, b)) @ _sampling(self, count).even_integral.T)
-
-    def _jacobian(self, p: Parameters, b: float) -> Floats:
-        return np.asarray(_stretch(_operators(self)[0], p, b))
+        return np.asarray((values * np.asarray(self.jacobian(p, b))) @ _sampling(self, count).even_integral.T)
 
 
 FORM = Form(state=lambda theta, y, p: (theta, y[0], y[1]), rate=lambda y, p: angle_rate(y[0], p))
 
 
+class Constants(NamedTuple):
+    """A space at the points of its quadrature rule."""
+
+    x: Floats
+    weights: Floats  #: in x, over the length that carries points
+    shape: Floats  #: psi by coefficients (points, modes)
+    slope: Floats  #: d psi/dx by coefficients
+    cumulate: Floats  #: integral in x from the first end to each point (points, points)
+
+
 @lru_cache(maxsize=64)
-def _operators(line: Line) -> tuple[Floats, Floats, Floats, Floats, Floats]:
-    """x, weights, modes, their x-derivatives and the cumulative integral in x: constants of the space."""
+def _operators(line: Line) -> Constants:
     xi, w = legendre.leggauss(line.points)
     length = 1.0 if line.half else 2.0
     x = (xi - 1.0) / 2.0 if line.half else xi
     series = modes(line)
     shape, slope = legendre.legval(x, series).T, legendre.legval(x, legendre.legder(series)).T
-    return x, w * length / 2.0, shape, slope, cumulative(xi, w, xi) * length / 2.0
+    return Constants(x, w * length / 2.0, shape, slope, cumulative(xi, w, xi) * length / 2.0)
 
 
 @lru_cache(maxsize=64)
@@ -140,7 +158,7 @@ class Sampling(NamedTuple):
 def _sampling(line: Line, count: int | None) -> Sampling:
     """Sampling at `count` points uniform in x over the full length, or at the mesh's points."""
     xi, w = legendre.leggauss(line.points)
-    x = _operators(line)[0] if count is None else np.linspace(-1.0, 1.0, count)
+    x = _operators(line).x if count is None else np.linspace(-1.0, 1.0, count)
     folded, length = (-np.abs(x), 0.5) if line.half else (x, 1.0)
     series = modes(line)
     shape, slope = legendre.legval(folded, series).T, legendre.legval(folded, legendre.legder(series)).T
@@ -169,6 +187,6 @@ def coordinate(x: Any, p: Parameters, b: Number) -> Any:
     return 0.5 * p.H0 * (1.0 + jnp.tanh(b * x) / jnp.tanh(b))
 
 
-def _stretch(x: Any, p: Parameters, b: Number) -> Any:
+def stretch(x: Any, p: Parameters, b: Number) -> Any:
     """dv/dx [m]."""
     return 0.5 * p.H0 * b / jnp.cosh(b * x) ** 2 / jnp.tanh(b)

@@ -1,7 +1,6 @@
 """Elastic energy of the mesh of Kirchhoff rods, per unit v."""
 
-import jax.numpy as jnp
-
+from .angle import sin
 from .kinematics import fibre_strains, natural_strains
 from .parameters import Number, Parameters
 
@@ -12,6 +11,6 @@ def fibre_densities(theta: Number, psi: Number, kappa: Number, p: Parameters) ->
     A fibre is 1/sin(theta0) long per unit v, which gives the factor N/(2 sin(theta0)).
     """
     strains, natural = fibre_strains(theta, psi, kappa, p), natural_strains(p)
-    factor = p.N / (2.0 * jnp.sin(p.theta0))
+    factor = p.N / (2.0 * sin(p.theta0))
     d1, d2, d3 = (factor * B * (u - u0) ** 2 for B, u, u0 in zip((p.B1, p.B2, p.B3), strains, natural, strict=True))
     return d1, d2, d3

@@ -7,33 +7,34 @@ bulge overhang its fitting; inextensibility (Eqs. 11-12) then reads theta' = -si
 
 import jax.numpy as jnp
 
+from .angle import cos, sin, tan
 from .parameters import Number, Parameters
 
 
 def radius(theta: Number, p: Parameters) -> Number:
     """Current radius r [m] (Eq. 11)."""
-    return p.R0 * jnp.cos(theta) / jnp.cos(p.theta0)
+    return p.R0 * cos(theta) / cos(p.theta0)
 
 
 def meridian_stretch(theta: Number, p: Parameters) -> Number:
     """Meridian stretch s = |d(r, z)/dv| (square root of G in Eq. 5, by Eq. 10 corrected)."""
-    return jnp.sin(theta) / jnp.sin(p.theta0)
+    return sin(theta) / sin(p.theta0)
 
 
 def stretches(theta: Number, p: Parameters) -> tuple[Number, Number, Number]:
     """Principal stretches of the incompressible chamber: hoop, axial, thickness (Eq. 24)."""
-    hoop, axial = jnp.cos(theta) / jnp.cos(p.theta0), meridian_stretch(theta, p)
+    hoop, axial = cos(theta) / cos(p.theta0), meridian_stretch(theta, p)
     return hoop, axial, 1.0 / (hoop * axial)
 
 
 def angle_rate(psi: Number, p: Parameters) -> Number:
     """theta' = d theta/dv [rad/m] that keeps the fibres inextensible at slope psi (Eq. 12)."""
-    return -jnp.sin(psi) / (p.R0 * jnp.tan(p.theta0))
+    return -sin(psi) / (p.R0 * tan(p.theta0))
 
 
 def height_rate(theta: Number, psi: Number, p: Parameters) -> Number:
     """z' = dz/dv, the axial length per unit v (Eq. 12)."""
-    return meridian_stretch(theta, p) * jnp.cos(psi)
+    return meridian_stretch(theta, p) * cos(psi)
 
 
 def volume_rate(theta: Number, psi: Number, p: Parameters) -> Number:
@@ -46,14 +47,14 @@ def fibre_strains(theta: Number, psi: Number, kappa: Number, p: Parameters) -> t
 
     Eq. (15) is misprinted in the paper: its first term divides by tan(theta), not tan(theta0).
     """
-    u1 = -2.0 * jnp.cos(p.theta0) * jnp.sin(psi) / p.R0
-    hoop, bend = jnp.cos(p.theta0) * jnp.cos(psi) / p.R0, jnp.sin(p.theta0) * kappa
-    u2 = -hoop * jnp.cos(theta) + bend * jnp.sin(theta)
-    u3 = hoop * jnp.sin(theta) + bend * jnp.cos(theta)
+    u1 = -2.0 * cos(p.theta0) * sin(psi) / p.R0
+    hoop, bend = cos(p.theta0) * cos(psi) / p.R0, sin(p.theta0) * kappa
+    u2 = -hoop * cos(theta) + bend * sin(theta)
+    u3 = hoop * sin(theta) + bend * cos(theta)
     return u1, u2, u3
 
 
 def natural_strains(p: Parameters) -> tuple[Number, Number, Number]:
     """Stress-free strains [1/m]: those of the initial helix (Eq. 18), or zero for naturally straight fibres."""
-    c, s = jnp.cos(p.theta0), jnp.sin(p.theta0)
+    c, s = cos(p.theta0), sin(p.theta0)
     return 0.0 * c, -p.helical * c * c / p.R0, p.helical * c * s / p.R0

@@ -3,6 +3,7 @@
 Numbers are leaves of JAX pytrees (they can be traced, differentiated and batched), choices are static.
 """
 
+import math
 from collections.abc import Callable
 from typing import Any, NamedTuple
 
@@ -36,16 +37,20 @@ class Parameters(NamedTuple):
 
 def parameters(muscle: "spec.Muscle") -> Parameters:
     """Numbers of a muscle; differentiable with respect to every number of its specification."""
+    return jax.tree.map(lambda x: jnp.asarray(x, float), numbers(muscle))
+
+
+def numbers(muscle: "spec.Muscle") -> Parameters:
+    """Numbers of a muscle as they are in its specification, floats or traced."""
     braid, fibre, chamber = muscle.braid, muscle.braid.fibre, muscle.chamber
     B1, B2, B3 = fibre.stiffnesses
     thickness = 0.0 if chamber is None else chamber.thickness
-    numbers = Parameters(
+    return Parameters(
         braid.radius, braid.length, braid.angle, braid.fibres, B1, B2, B3,
         1.0 if fibre.natural == "helical" else 0.0,
-        jnp.pi * thickness * (thickness + 2.0 * braid.radius),
+        math.pi * thickness * (thickness + 2.0 * braid.radius),
         () if chamber is None else constants(chamber.law),
     )  # fmt: skip
-    return jax.tree.map(lambda x: jnp.asarray(x, float), numbers)
 
 
 def constants(law: Any) -> Any:
