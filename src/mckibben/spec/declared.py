@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Iterator
 from enum import StrEnum
+from functools import cache
 from typing import TYPE_CHECKING, Any, Generic, TypeVar
 
 import attrs
@@ -94,6 +95,7 @@ def evolved(value: T, **changes: Any) -> T:
     return copy
 
 
+@cache
 def describe(cls: type) -> tuple[Declared, ...]:
     """The declared fields of a spec class, in order, each with its name."""
     found = ((field.name, field.metadata.get("declared")) for field in attrs.fields(cls))
