@@ -35,7 +35,7 @@ from mckibben.study.trouble import SweepError
 __all__ = ["Store", "is_store", "load"]
 
 _MARK = "status"
-_KEYS = {"name": "default", "separator": "."}
+_KEYS: dict[str, Any] = {"name": "default", "separator": "."}
 """Chunk files lie side by side in the folder of their array: force/c.3.0."""
 
 

@@ -95,9 +95,13 @@ def evolved(value: T, **changes: Any) -> T:
     return copy
 
 
-@cache
 def describe(cls: type) -> tuple[Declared, ...]:
     """The declared fields of a spec class, in order, each with its name."""
+    return _described(cls)
+
+
+@cache
+def _described(cls: Any) -> tuple[Declared, ...]:
     found = ((field.name, field.metadata.get("declared")) for field in attrs.fields(cls))
     return tuple(attrs.evolve(declared, name=name) for name, declared in found if declared is not None)
 

@@ -100,7 +100,7 @@ def changed(muscle: Muscle, test: Test, values: Mapping[str, Any]) -> tuple[Musc
 
 
 def _muscle(muscle: Muscle, values: dict[str, Any]) -> Muscle:
-    changes = [(tuple(name.split(".")), value) for name, value in values.items()]
+    changes: list[tuple[tuple[str, ...], Any]] = [(tuple(name.split(".")), value) for name, value in values.items()]
     kept = [name for name in muscle.assumed if not any(name == f or name.startswith(f + ".") for f in values)]
     changes.append((("assumed",), tuple(kept)))
     if muscle.name and "name" not in values:
@@ -119,14 +119,14 @@ def _changed(owner: Any, changes: Sequence[tuple[tuple[str, ...], Any]], prefix:
         else:
             new[head] = value
     if isinstance(owner, tuple):
-        steps = {int(head): _changed(owner[int(head)], rest, f"{prefix}{head}.") for head, rest in inner.items()}
+        steps = {int(head): _changed(owner[int(head)], some, f"{prefix}{head}.") for head, some in inner.items()}
         return tuple(steps.get(k, step) for k, step in enumerate(owner))
     names = attrs.fields_dict(type(owner)) if owner is not None else {}
     for head in (*new, *inner):
         if head not in names:
             raise SpecError(f"{prefix}{head}", allowed="is no field of this muscle")
-    for head, rest in inner.items():
-        new[head] = _changed(new.get(head, getattr(owner, head)), rest, f"{prefix}{head}.")
+    for head, some in inner.items():
+        new[head] = _changed(new.get(head, getattr(owner, head)), some, f"{prefix}{head}.")
     if isinstance(owner, Fibre):
         new |= dict.fromkeys(_left_behind(owner, new))
     return evolved(owner, **new)

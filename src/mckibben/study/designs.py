@@ -16,7 +16,7 @@ from mckibben.spec.text import to_mapping
 from mckibben.spec.vary import changed
 from mckibben.study.varied import Varied, from_lists, from_table
 
-__all__ = ["CHUNK", "Piece", "Plan", "plan"]
+__all__ = ["CHUNK", "Piece", "Plan", "plan", "versions"]
 
 CHUNK = 512
 """Designs in a chunk by default."""
@@ -85,6 +85,10 @@ class Plan:
         """The designs of a chunk."""
         return slice(index * self.chunk, min((index + 1) * self.chunk, len(self)))
 
+    def size(self, index: int) -> int:
+        """Number of designs in a chunk; the last may be smaller."""
+        return len(range(*self.within(index).indices(len(self))))
+
     def row(self, k: int) -> tuple[Any, ...]:
         """What each field is in design k."""
         if self.table:
@@ -119,8 +123,13 @@ class Plan:
             "count": len(self),
             "tolerance": self.tolerance,
             "chunk": self.chunk,
-            "versions": {name: version(name) for name in MADE_BY},
+            "versions": versions(),
         }
+
+
+def versions() -> dict[str, str]:
+    """Versions of what makes the numbers, on this machine."""
+    return {name: version(name) for name in MADE_BY}
 
 
 def plan(

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
+from functools import partial
 from os import PathLike
 from typing import Any
 
@@ -11,9 +12,11 @@ import xarray as xr
 from mckibben.experiment import sizes_for
 from mckibben.files.sweeps import Store
 from mckibben.spec import Muscle, SpecError, Test
+from mckibben.study.chunk import solve
 from mckibben.study.collect import Memory
 from mckibben.study.designs import Plan, plan
-from mckibben.study.schedule import here, spread
+from mckibben.study.outcome import Columns
+from mckibben.study.schedule import spread
 
 __all__ = ["sweep"]
 
@@ -75,21 +78,25 @@ def _finish(
     wanted: Plan, keeper: Memory | Store, workers: int | None, scheduler: str | None, watch: Callable[[int, int], None]
 ) -> None:
     """Solve what is missing and keep it."""
-    missing = keeper.missing
-    sizes = {index: len(range(*wanted.within(index).indices(len(wanted)))) for index in missing}
-    done = len(wanted) - sum(sizes.values())
-    watch(done, len(wanted))
+    missing, total = keeper.missing, len(wanted)
+    done = total - sum(wanted.size(index) for index in missing)
+
+    def keep(index: int, columns: Columns) -> None:
+        nonlocal done
+        keeper.put(index, columns)
+        done += wanted.size(index)
+        watch(done, total)
+
+    watch(done, total)
     if not missing:
         return
     if scheduler is None and (workers == 0 or (workers is None and len(missing) == 1)):
         for index in missing:
-            at = done
-            columns = here(wanted.piece(index), lambda k, at=at: watch(at + k, len(wanted)))
-            keeper.put(index, columns)
-            done += sizes[index]
-            watch(done, len(wanted))
-        return
-    for index, columns in spread(wanted, missing, workers, scheduler):
-        keeper.put(index, columns)
-        done += sizes[index]
-        watch(done, len(wanted))
+            keep(index, solve(wanted.piece(index), partial(_within, watch, done, total)))
+    else:
+        spread(wanted, missing, keep, workers, scheduler)
+
+
+def _within(watch: Callable[[int, int], None], before: int, total: int, done: int) -> None:
+    """Progress of one chunk as progress of the sweep."""
+    watch(before + done, total)
