@@ -115,10 +115,11 @@ class Plan:
         over: Any = {varied.field: varied.plain for varied in self.varied}
         if self.table:
             text = json.dumps(list(over.values()))
-            over = {"fields": list(over), "sha256": hashlib.sha256(text.encode()).hexdigest()}
+            over = {"sha256": hashlib.sha256(text.encode()).hexdigest()}
         return {
             "muscle": to_mapping(self.muscle, allow_custom=True),
             "test": to_mapping(self.test),
+            "fields": [varied.field for varied in self.varied],  # the last varies fastest
             "designs" if self.table else "over": over,
             "count": len(self),
             "tolerance": self.tolerance,
