@@ -60,8 +60,10 @@ def muscle_from_mapping(mapping: Any) -> Muscle:
     table = dict(_table(mapping, "muscle", "muscle"))
     _known(table, ("preset", *(item.name for item in describe(Muscle))), "muscle")
     if "preset" in table:
-        preset = presets.get(table.pop("preset"))
-        table = merged(to_mapping(preset), table)
+        name = table.pop("preset")
+        if not isinstance(name, str):
+            raise SpecError("muscle.preset", name, "must be a name", f"choose from {', '.join(presets.names())}")
+        table = merged(to_mapping(presets.get(name)), table)
     muscle: Muscle = _build(Muscle, table, "muscle", "muscle")
     return muscle
 
