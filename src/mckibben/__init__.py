@@ -13,6 +13,8 @@ _PUBLIC = {
     "mckibben.seek": ("solve",),
     "mckibben.reach": ("Limits", "least_pressure", "limits", "working_range"),
     "mckibben.caution": ("cautions",),
+    "mckibben.study.sweep": ("sweep",),
+    "mckibben.study.trouble": ("SweepError",),
     "mckibben.datasheet": ("force_map",),
     "mckibben.view.curves": ("plot",),
     "mckibben.result": ("Result", "State"),

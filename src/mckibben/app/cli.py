@@ -8,7 +8,7 @@ from typing import Annotated
 
 import typer
 
-from mckibben.app import commands_draw, commands_look, commands_run
+from mckibben.app import commands_draw, commands_look, commands_run, commands_sweep
 from mckibben.app.console import examples
 
 __all__ = ["app", "main"]
@@ -25,9 +25,11 @@ app = typer.Typer(
         "mckibben run case.toml -o out.nc",
         "mckibben plot out.nc -o force.png",
     )
-    + "\n\nExit codes: 0 complete, 2 wrong input, 3 part of the test has no admissible equilibrium.",
+    + "\n\nExit codes: 0 complete, 2 wrong input, 3 part of the test has no admissible equilibrium, "
+    "4 a sweep was cut short.",
 )
 app.command(epilog=commands_run.EPILOG)(commands_run.run)
+app.command(epilog=commands_sweep.EPILOG)(commands_sweep.sweep)
 app.command(epilog=commands_look.CHECK)(commands_look.check)
 app.command(epilog=commands_look.PRESETS)(commands_look.presets)
 app.command(epilog=commands_draw.PLOT)(commands_draw.plot)

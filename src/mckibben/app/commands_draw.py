@@ -56,7 +56,7 @@ def plot(
     target = file.with_suffix(".png") if output is None else output
     suffix = store.suffix_of(target, PICTURES)
     atomic.check_target(target, force)
-    result = store.load(file)
+    result = store.load_result(file)
     picture = io.BytesIO()
     _figure(result, kind).savefig(picture, format=suffix[1:])
     atomic.write(target, picture.getbuffer(), force)

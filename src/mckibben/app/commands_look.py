@@ -3,17 +3,20 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import Annotated
+from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
 from mckibben.app.console import command, examples, say, table
 
+if TYPE_CHECKING:
+    from mckibben.files.sweepfile import SweepCase
+
 __all__ = ["CHECK", "INFO", "PRESETS", "check", "info", "presets"]
 
 CHECK = examples("mckibben check case.toml", 'mckibben check case.toml --set braid.angle="36 deg"')
 PRESETS = examples("mckibben presets", "mckibben presets paper", "mckibben presets paper --toml > case.toml")
-INFO = examples("mckibben info", "mckibben info out.nc")
+INFO = examples("mckibben info", "mckibben info out.nc", "mckibben info out.zarr")
 
 
 @command
@@ -29,9 +32,10 @@ def check(
     Every field is shown with its unit and, where known, its source; what is assumed is marked. Numbers that follow from
     them, such as the longest possible length, come after.
     """
-    from mckibben.files.case import read_case
+    from mckibben.files.sweepfile import read_sweep
 
-    found = read_case(case, overrides or (), test_required=False)
+    asked = read_sweep(case, overrides or (), required=False)
+    found = asked.case
     from mckibben.app import fields
 
     name = f' "{found.muscle.name}"' if found.muscle.name else ""
@@ -45,11 +49,22 @@ def check(
     say()
     if found.test is not None:
         say(table(columns[:3], list(fields.test_rows(found.test)), title="Test"))
+    if asked.over is not None or asked.designs is not None:
+        say(table(("field", "values"), _swept(asked), title="Sweep"))
     say(table(("derived", *columns[1:3]), list(fields.derived(found.muscle)), title="What follows"))
     for note in fields.beyond(found.muscle, found.test):
         say(note)
     if found.test is None:
         say('There is no test: add a [test] table, such as kind = "isometric".')
+
+
+def _swept(asked: SweepCase) -> list[tuple[str, str]]:
+    from mckibben.study.designs import plan
+
+    assert asked.case.test is not None  # a sweep has one
+    wanted = plan(asked.case.muscle, asked.case.test, asked.over, asked.designs, chunk=asked.chunk)
+    rows = [(varied.field, _range(varied.coordinate, varied.unit)) for varied in wanted.varied]
+    return [*rows, ("designs in all", str(len(wanted)))]
 
 
 @command
@@ -79,11 +94,11 @@ def presets(
 
 @command
 def info(
-    file: Annotated[Path | None, typer.Argument(metavar="[FILE.nc]", help="a saved result to look into")] = None,
+    file: Annotated[Path | None, typer.Argument(metavar="[FILE]", help="a saved result (.nc) or sweep (.zarr)")] = None,
 ) -> None:
     """Show the versions and the machine, or with a file what it holds."""
-    rows = _installation() if file is None else _content(file)
-    say(table(("", ""), rows))
+    look = _sweep if file is not None and file.suffix.lower() == ".zarr" else _content
+    say(table(("", ""), _installation() if file is None else look(file)))
 
 
 def _installation() -> list[tuple[str, str]]:
@@ -113,7 +128,7 @@ def _content(file: Path) -> list[tuple[str, str]]:
     from mckibben.files import store
     from mckibben.units import from_si
 
-    result = store.load(file)
+    result = store.load_result(file)
     about = result.data.attrs
     verdicts = Counter(result.verdict)
     rows = [
@@ -130,3 +145,42 @@ def _content(file: Path) -> list[tuple[str, str]]:
         values = values[values == values]  # without those that are not there
         rows.append((name, f"{values.min():.5g} to {values.max():.5g} {unit}" if len(values) else "none reached"))
     return rows
+
+
+def _sweep(file: Path) -> list[tuple[str, str]]:
+    import numpy as np
+
+    from mckibben.app.commands_sweep import counts
+    from mckibben.files import sweeps
+    from mckibben.units import from_si
+
+    data = sweeps.load(file)
+    about = data.attrs
+    rows = [
+        ("store", str(file)),
+        ("holds", f"{about['title']}, {data.sizes['step']} states each"),
+        ("designs", ", ".join(f"{count} {status}" for status, count in counts(data).items())),
+        ("made", f"from {about['date']} with {about['versions']}"),
+        ("tolerance", f"{about['tolerance']:g}"),
+        ("assumed", about["assumed"] or "nothing"),
+    ]
+    for name, coordinate in data.coords.items():
+        if name != "step":
+            rows.append((str(name), _range(coordinate.values, coordinate.attrs.get("units", ""))))
+    for name, unit in (("length", "mm"), ("force", "N"), ("pressure", "bar"), ("peak_fibre_tension", "N")):
+        values = data[name].values
+        values = from_si(values[~np.isnan(values)], unit)
+        rows.append((name, f"{values.min():.5g} to {values.max():.5g} {unit}" if len(values) else "none reached"))
+    return rows
+
+
+def _range(values: Any, unit: str) -> str:
+    """The values of a swept field: how many, and from where to where or which."""
+    from mckibben.units import DISPLAY, from_si
+
+    if values.dtype.kind not in "if":
+        words = list(dict.fromkeys(str(value) for value in values))
+        return f"{len(values)}: " + ", ".join(words[:6]) + (", ..." if len(words) > 6 else "")
+    shown = "" if unit == "1" else DISPLAY.get(unit, unit)
+    numbers = from_si(values, shown) if shown else values
+    return f"{len(values)}: {numbers.min():.6g} to {numbers.max():.6g} {shown}".rstrip()

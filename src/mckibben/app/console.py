@@ -20,6 +20,8 @@ __all__ = [
     "COMPLETE",
     "INCOMPLETE",
     "INPUT",
+    "INTERRUPTED",
+    "STOPPED",
     "Watch",
     "command",
     "complain",
@@ -30,7 +32,7 @@ __all__ = [
     "table",
 ]
 
-COMPLETE, INPUT, INCOMPLETE, INTERRUPTED = 0, 2, 3, 130
+COMPLETE, INPUT, INCOMPLETE, STOPPED, INTERRUPTED = 0, 2, 3, 4, 130
 """Exit codes. 1 is left to what should not happen."""
 
 P = ParamSpec("P")
@@ -69,17 +71,21 @@ def show_json(value: dict[str, Any]) -> None:
 
 
 def command(function: Callable[P, int | None]) -> Callable[P, None]:
-    """The one place where errors become messages: wrong input exits with 2, an interruption with 130."""
+    """The one place where errors become messages and exit codes, such as 2 for wrong input."""
 
     @functools.wraps(function)
     def wrapped(*args: P.args, **kwargs: P.kwargs) -> None:
         from mckibben.spec.errors import SpecError  # here, because `--help` needs none of it
+        from mckibben.study.trouble import SweepError
 
         try:
             code = function(*args, **kwargs)
         except SpecError as error:
             complain(str(error))
             raise typer.Exit(INPUT) from error
+        except SweepError as error:
+            complain(str(error))
+            raise typer.Exit(STOPPED) from error
         except KeyboardInterrupt as error:
             complain("interrupted")
             raise typer.Exit(INTERRUPTED) from error
@@ -91,26 +97,46 @@ def command(function: Callable[P, int | None]) -> Callable[P, None]:
 
 
 @contextmanager
-def progress(what: str, hidden: bool = False) -> Iterator[Watch]:
-    """A function to be told how far long work is; it draws a bar while stderr is a terminal."""
+def progress(what: str, hidden: bool = False, unit: str = "") -> Iterator[Watch]:
+    """A function to be told how far long work is; it draws a bar while stderr is a terminal.
+
+    With `unit` ("designs") the bar shows how many are done in a second and the time left. What is done already when it
+    is told for the first time does not count for that.
+    """
     console = _console(stderr=True)
     if hidden or not console.is_terminal:
         yield lambda done, total, what="", /: None
         return
-    from rich.progress import BarColumn, MofNCompleteColumn, Progress, SpinnerColumn, TextColumn, TimeElapsedColumn
+    from rich.progress import (
+        BarColumn,
+        MofNCompleteColumn,
+        Progress,
+        SpinnerColumn,
+        TextColumn,
+        TimeElapsedColumn,
+        TimeRemainingColumn,
+    )
 
     columns = (
         SpinnerColumn(),
         TextColumn("{task.description}"),
         BarColumn(),
         MofNCompleteColumn(),
-        TimeElapsedColumn(),
+        *((TextColumn("{task.fields[rate]}"), TimeRemainingColumn(elapsed_when_finished=True)) if unit else ()),
+        *(() if unit else (TimeElapsedColumn(),)),
     )
     with Progress(*columns, console=console, transient=True) as bar:
-        task = bar.add_task(f"{what}: compiling", total=None)
+        task = bar.add_task(f"{what}: compiling", total=None, rate="")
+        begun = False
 
         def watch(done: int, total: int, part: str = "", /) -> None:
-            bar.update(task, description=part or what, completed=done, total=total)
+            nonlocal begun
+            if unit and not begun:
+                bar.reset(task, completed=done, total=total)
+                begun = True
+            speed = bar.tasks[0].speed
+            rate = f"{speed:.3g} {unit}/s" if unit and speed else ""
+            bar.update(task, description=part or what, completed=done, total=total, rate=rate)
 
         yield watch
 

@@ -12,7 +12,7 @@ from pathlib import Path
 
 from mckibben.spec.errors import SpecError
 
-__all__ = ["check_target", "write"]
+__all__ = ["check_target", "settle", "write"]
 
 
 def check_target(path: str | PathLike[str], force: bool = False) -> Path:
@@ -60,7 +60,7 @@ def write(path: str | PathLike[str], data: bytes | memoryview, force: bool = Fal
     finally:
         if temporary is not None:
             temporary.unlink(missing_ok=True)
-    _settle(target.parent)
+    settle(target.parent)
     return target
 
 
@@ -77,7 +77,7 @@ def _mode(target: Path) -> int:
     return 0o666 & ~mask
 
 
-def _settle(folder: Path) -> None:
+def settle(folder: Path) -> None:
     """Have the folder's entry on the disk too, where the system can; the file itself is already whole."""
     if os.name != "posix":
         return

@@ -6,11 +6,12 @@ import tomllib
 from collections.abc import Iterable
 from os import PathLike
 from pathlib import Path
+from typing import Any
 
 from mckibben.spec.errors import SpecError
 from mckibben.spec.text import Case, apply_overrides, from_mapping
 
-__all__ = ["read_case"]
+__all__ = ["read_case", "read_mapping"]
 
 
 def read_case(path: str | PathLike[str], overrides: Iterable[str] = (), *, test_required: bool = True) -> Case:
@@ -18,10 +19,18 @@ def read_case(path: str | PathLike[str], overrides: Iterable[str] = (), *, test_
 
     Raises SpecError, in one line, for a file that cannot be read or is not TOML, and for whatever is wrong in it.
     """
+    mapping = read_mapping(path)
+    if "sweep" in mapping:
+        raise SpecError(str(path), allowed="describes a sweep", advice="give it to mckibben sweep")
+    return from_mapping(apply_overrides(mapping, overrides), test_required=test_required)
+
+
+def read_mapping(path: str | PathLike[str]) -> dict[str, Any]:
+    """What the TOML file at `path` says. SpecError, in one line, for a file that cannot be read or is not TOML."""
     name = str(path)
     try:
         text = Path(path).read_bytes().decode("utf-8")
-        mapping = tomllib.loads(text)
+        return tomllib.loads(text)
     except FileNotFoundError as error:
         raise SpecError(name, allowed="there is no such file") from error
     except OSError as error:
@@ -33,4 +42,3 @@ def read_case(path: str | PathLike[str], overrides: Iterable[str] = (), *, test_
         raise SpecError(name, allowed=f"is not valid TOML: {error}") from error
     except (RecursionError, ValueError) as error:  # brackets without end; a path with a null character
         raise SpecError(name, allowed="cannot be read") from error
-    return from_mapping(apply_overrides(mapping, overrides), test_required=test_required)

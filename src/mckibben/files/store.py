@@ -10,9 +10,11 @@ from mckibben.files import atomic
 from mckibben.spec.errors import SpecError
 
 if TYPE_CHECKING:
+    from xarray import Dataset
+
     from mckibben.result import Result
 
-__all__ = ["SUFFIXES", "check_output", "load", "save", "suffix_of"]
+__all__ = ["SUFFIXES", "check_output", "load", "load_result", "save", "suffix_of"]
 
 SUFFIXES = {".nc": "everything, to be loaded again (NetCDF-4)", ".csv": "the table of states"}
 
@@ -46,10 +48,24 @@ def save(result: Result, path: str | PathLike[str], force: bool = False) -> Path
     return table.save_csv(result, path, force)
 
 
-def load(path: str | PathLike[str]) -> Result:
-    """The result in an `.nc` file, equal to what was saved. SpecError for any file that is not a whole result."""
+def load(path: str | PathLike[str]) -> Result | Dataset:
+    """The result in an `.nc` file, equal to what was saved, or the sweep in a `.zarr` store, finished or not.
+
+    A sweep is an xarray Dataset that is read from the disk when used. SpecError for anything else.
+    """
+    if Path(path).suffix.lower() == ".zarr":
+        from mckibben.files import sweeps
+
+        return sweeps.load(path)
+    return load_result(path)
+
+
+def load_result(path: str | PathLike[str]) -> Result:
+    """The result in an `.nc` file. SpecError for any file that is not a whole result."""
     if Path(path).suffix.lower() == ".csv":
         raise SpecError(str(path), allowed="is a table only", advice="save results as .nc to load them again")
+    if Path(path).suffix.lower() == ".zarr":
+        raise SpecError(str(path), allowed="holds a sweep, not one result", advice="open it with mckibben.load")
     from mckibben.files import netcdf
 
     return netcdf.load(path)

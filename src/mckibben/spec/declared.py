@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Iterator
 from enum import StrEnum
+from functools import cache
 from typing import TYPE_CHECKING, Any, Generic, TypeVar
 
 import attrs
@@ -96,6 +97,11 @@ def evolved(value: T, **changes: Any) -> T:
 
 def describe(cls: type) -> tuple[Declared, ...]:
     """The declared fields of a spec class, in order, each with its name."""
+    return _described(cls)
+
+
+@cache
+def _described(cls: Any) -> tuple[Declared, ...]:
     found = ((field.name, field.metadata.get("declared")) for field in attrs.fields(cls))
     return tuple(attrs.evolve(declared, name=name) for name, declared in found if declared is not None)
 

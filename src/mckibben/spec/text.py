@@ -27,6 +27,8 @@ __all__ = [
     "apply_overrides",
     "from_mapping",
     "muscle_from_mapping",
+    "part_from_plain",
+    "plain",
     "test_from_mapping",
     "to_mapping",
     "to_toml",
@@ -58,8 +60,10 @@ def muscle_from_mapping(mapping: Any) -> Muscle:
     table = dict(_table(mapping, "muscle", "muscle"))
     _known(table, ("preset", *(item.name for item in describe(Muscle))), "muscle")
     if "preset" in table:
-        preset = presets.get(table.pop("preset"))
-        table = merged(to_mapping(preset), table)
+        name = table.pop("preset")
+        if not isinstance(name, str):
+            raise SpecError("muscle.preset", name, "must be a name", f"choose from {', '.join(presets.names())}")
+        table = merged(to_mapping(presets.get(name)), table)
     muscle: Muscle = _build(Muscle, table, "muscle", "muscle")
     return muscle
 
@@ -70,6 +74,13 @@ def test_from_mapping(mapping: Any) -> Test:
     kind = _name(table, "kind", "test", TESTS)
     test: Test = _build(TESTS[kind], table, "test", "test")
     return test
+
+
+def part_from_plain(item: Declared, value: Any, owner: str) -> Any:
+    """A part of a muscle (its law, its fibre) from its table, where `owner` is the field that holds it ("chamber")."""
+    if isinstance(value, item.parts) or (value is None and item.default is None):
+        return value
+    return _value(item, value, owner, "muscle" if owner == "muscle" else f"muscle.{owner}")
 
 
 test_from_mapping.__test__ = False  # type: ignore[attr-defined]  # not a test for pytest to collect
@@ -159,6 +170,24 @@ def to_mapping(value: Case | Muscle | Test, *, allow_custom: bool = False) -> di
 def to_toml(value: Case | Muscle | Test, *, allow_custom: bool = False) -> str:
     """TOML text of `to_mapping`."""
     return tomli_w.dumps(to_mapping(value, allow_custom=allow_custom))
+
+
+def plain(value: Any) -> Any:
+    """What a field holds, as exact TOML values. For a CustomLaw its name and constants stand."""
+    if value is None:
+        return "none"
+    if isinstance(value, CustomLaw):
+        return _custom(value, allowed=True)
+    if isinstance(value, Path):
+        return value.to_plain()
+    if isinstance(value, StrEnum):
+        return str(value)
+    if isinstance(value, tuple):
+        return [plain(entry) for entry in value]
+    if not attrs.has(type(value)):
+        return value
+    lead = {"name": value.name} if type(value) in LAWS.values() else {}
+    return lead | _written(value, allow_custom=True)
 
 
 def _written(value: Any, allow_custom: bool) -> dict[str, Any]:

@@ -1,0 +1,1 @@
+"""Many designs at once: sweeps over fields of the muscle and its test."""
