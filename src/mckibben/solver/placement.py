@@ -15,8 +15,8 @@ UNIFORM, STEEPEST = 0.5, 8.0
 
 
 @partial(jax.jit, static_argnums=0)
-def _crowding(law: Law, p: Parameters, length: Array, force: Array, pressure: Array) -> Float[Array, " n"]:
-    """b for states of given length, or of given force where the length is NaN."""
+def crowdings(law: Law, p: Parameters, length: Array, force: Array, pressure: Array) -> Float[Array, " n"]:
+    """b for each of n states of given length, or of given force where the length is NaN."""
     angles = jnp.linspace(jnp.deg2rad(3.0), jnp.deg2rad(88.0), 341)
 
     def one(length: Array, force: Array, pressure: Array) -> Array:
@@ -36,4 +36,4 @@ def crowding(law: Law, p: Parameters, length: np.ndarray, force: np.ndarray, pre
     """Crowding b of points that serves all the given states (NaN where length or force is not held)."""
     size = max(32, 1 << int(len(length) - 1).bit_length())
     padded = (np.concatenate([a, np.repeat(a[-1:], size - len(a))]) for a in (length, force, pressure))
-    return float(np.max(np.asarray(_crowding(law, p, *padded))))
+    return float(np.max(np.asarray(crowdings(law, p, *padded))))
