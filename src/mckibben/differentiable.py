@@ -13,8 +13,7 @@ from .model.chamber import law_of
 from .model.parameters import Number, Parameters, parameters
 from .observe import OBSERVED, observe
 from .solver.approach import approach, selection, targets, units
-from .solver.equilibrium import NAMES
-from .solver.implicit import settle
+from .solver.implicit import potential, settle
 from .solver.placement import crowdings
 from .solver.problem import Space
 from .spec import Along, Muscle, SpecError, Step, Test
@@ -117,7 +116,7 @@ def _results(
         good = jnp.isfinite(w).all(axis=1)
         seen = jax.vmap(lambda w: observe(space, p, b, w))(jnp.where(good[:, None], w, 0.0))
         seen = {name: _honest(values, good) for name, values in seen.items()}
-        present = jnp.stack([seen[name][-1] for name in NAMES]) / unit
+        present = potential(space, p, b, w[-1])[1]
         found.append(seen)
     return {name: jnp.concatenate([seen[name] for seen in found]) for name in OBSERVED}
 

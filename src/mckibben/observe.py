@@ -5,6 +5,7 @@ import jax.numpy as jnp
 import numpy as np
 from jaxtyping import Array, Float
 
+from .discretise.line import Line
 from .discretise.mesh import values
 from .model.chamber import chamber_density
 from .model.energy import scales
@@ -35,6 +36,7 @@ _SERIES = np.linalg.inv(np.vander(_OFFSETS))
 
 def observe(space: Space, p: Parameters, b: Number, w: Float[Array, " w"]) -> dict[str, Float[Array, ""]]:
     """The `OBSERVED` results, in SI units, of a symmetric state w = (u, force, pressure) on a half line."""
+    assert isinstance(space.basis, Line)
     basis, law, unit = space.basis, space.law, scales(p, space.law)
     u, F, P = w[:-2], w[-2] * unit[0] / unit[LENGTH], w[-1] * unit[0] / unit[VOLUME]
     mesh = space.mesh(p, b)

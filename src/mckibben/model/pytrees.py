@@ -22,7 +22,7 @@ Key = jax.tree_util.GetAttrKey
 
 def _made(cls: type, values: dict[str, Any]) -> Any:
     """An object of a spec class without its converters and checks."""
-    made = object.__new__(cls)
+    made: Any = object.__new__(cls)
     for name, value in values.items():
         object.__setattr__(made, name, value)
     return made

@@ -52,7 +52,7 @@ def approach(space: Space, p: Parameters, b: Number, steps: tuple[Step, ...]) ->
         if index == 0:
             w, have = _pressure_first(space, p, b, w, have, step, wanted)
         select = selection(step.controls)
-        lead = _straight(select @ have, wanted[0])
+        lead = _straight(jnp.asarray(select) @ have, wanted[0])
         states, last = _walk(space, p, b, w, select, jnp.concatenate([lead, wanted]))
         found.append(states[LEG:])
         w, have = states[-1], last
@@ -68,7 +68,7 @@ def _pressure_first(
     top = wanted[:, names.index("pressure")].max() if "pressure" in names else jnp.ones(())
     end = wanted[0, names.index(axial)] if axial in names else have[NAMES.index(axial)]
     select = selection((axial, "pressure"))
-    first, above, aside = select @ have, jnp.stack([have[NAMES.index(axial)], top]), jnp.stack([end, top])
+    first, above, aside = jnp.asarray(select) @ have, jnp.stack([have[NAMES.index(axial)], top]), jnp.stack([end, top])
     way = jnp.concatenate([_straight(first, above), _straight(above, aside), aside[None]])
     states, last = _walk(space, p, b, w, select, way)
     return states[-1], last

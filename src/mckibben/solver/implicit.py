@@ -21,19 +21,26 @@ from .follow import bordered
 from .problem import LENGTH, VOLUME, Space
 
 
+def potential(
+    space: Space, p: Parameters, b: Number, w: Float[Array, " w"]
+) -> tuple[Float[Array, " u"], Float[Array, "4"]]:
+    """Gradient of the potential energy by u, and the values of `NAMES` (length, volume, force, pressure)."""
+    signs = jnp.stack([jnp.ones_like(w[-2]), -w[-2], -w[-1], jnp.zeros_like(w[-1])])
+    mesh, form, density = space.mesh(p, b), space.basis.form, space.density(p)
+
+    def energy(u: Array) -> tuple[Array, Array]:
+        found = totals(mesh, form, density, u, p)
+        return signs @ found, found
+
+    rest, found = jax.grad(energy, has_aux=True)(w[:-2])
+    return rest, jnp.concatenate([found[LENGTH : VOLUME + 1], w[-2:]])
+
+
 def imbalance(
     space: Space, p: Parameters, b: Number, w: Float[Array, " w"], select: Any, targets: Float[Array, "2"]
 ) -> Float[Array, " w"]:
     """R: the gradient of the potential energy by u, and what is held minus its targets; dimensionless."""
-    signs = jnp.stack([jnp.ones_like(w[-2]), -w[-2], -w[-1], jnp.zeros_like(w[-1])])
-    mesh, form, density = space.mesh(p, b), space.basis.form, space.density(p)
-
-    def potential(u: Array) -> tuple[Array, Array]:
-        found = totals(mesh, form, density, u, p)
-        return signs @ found, found
-
-    rest, found = jax.grad(potential, has_aux=True)(w[:-2])
-    have = jnp.concatenate([found[LENGTH : VOLUME + 1], w[-2:]])
+    rest, have = potential(space, p, b, w)
     return jnp.concatenate([rest, select @ have - targets])
 
 
@@ -41,7 +48,7 @@ def imbalance(
 def settle(
     space: Space, w: Float[Array, " w"], p: Parameters, b: Number, select: Any, targets: Float[Array, "2"]
 ) -> Float[Array, " w"]:
-    """w, which must be a state, as a function of p and targets that can be differentiated to any order; NaN stays NaN."""
+    """w, which must be a state, as a function of p and targets, differentiable to any order; NaN stays NaN."""
     return w
 
 
