@@ -21,7 +21,7 @@ from .solver.approach import selection, targets, units
 from .solver.implicit import potential, settle
 from .solver.problem import Problem, Space
 from .spec import Muscle, SpecError, Step, Test, numbers
-from .spec.declared import Declared
+from .spec.declared import Declared, evolved
 from .spec.errors import nearest
 from .spec.text import to_toml
 
@@ -150,7 +150,7 @@ def _derivatives(
         first, rows = first - 1, [-1, *rows]
     surveys = [part.survey for part in parts[first : index + 1] if part.survey is not None]
     states = tuple(np.concatenate([view.u[k], view.loads[k, 1:3]]) for view, k in zip(surveys, rows, strict=True))
-    problem, plain = surveys[-1].problem, attrs.evolve(muscle, name=None, assumed=())
+    problem, plain = surveys[-1].problem, evolved(muscle, name=None, assumed=())
     value, slope = _slopes(problem.space, first, problem.b, states, np.asarray(row), plain, test)
     return np.array(value), np.array(slope), _natural(problem)
 

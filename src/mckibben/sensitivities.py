@@ -33,7 +33,7 @@ def sensitivities(
         "relative": (
             dims,
             relative,
-            {"units": "1", "long_name": "per cent of the result for one per cent of the number"},
+            {"units": "1", "long_name": "per cent of the result per per cent of the number"},
         ),
         "absolute": (dims, absolute, {"long_name": "derivative, SI unit of the result over that of the number"}),
     }

@@ -8,7 +8,7 @@ from typing import Annotated
 
 import typer
 
-from mckibben.app import commands_draw, commands_look, commands_run
+from mckibben.app import commands_derive, commands_draw, commands_look, commands_run
 from mckibben.app.console import examples
 
 __all__ = ["app", "main"]
@@ -28,6 +28,7 @@ app = typer.Typer(
     + "\n\nExit codes: 0 complete, 2 wrong input, 3 part of the test has no admissible equilibrium.",
 )
 app.command(epilog=commands_run.EPILOG)(commands_run.run)
+app.command(epilog=commands_derive.SENSITIVITY)(commands_derive.sensitivity)
 app.command(epilog=commands_look.CHECK)(commands_look.check)
 app.command(epilog=commands_look.PRESETS)(commands_look.presets)
 app.command(epilog=commands_draw.PLOT)(commands_draw.plot)

@@ -14,6 +14,8 @@ from . import style
 
 ROW, MARGIN = 0.2, 1.15
 """Height [inch] of a bar with its gap, and of everything else."""
+LABELS, NUMBER = 1.7, 0.5
+"""Widths [inch] of the names on the left and of a number beside its bar."""
 MARK = " *"
 """After the name of a number that is assumed."""
 
@@ -34,10 +36,10 @@ def tornado(sensitivity: Sensitivity) -> Figure:
     figure = style.new_figure(width, MARGIN + ROW * len(rows))
     panels = np.atleast_1d(figure.subplots(1, len(columns), sharey=True))
     for j, axes in zip(columns, panels, strict=True):
-        _panel(axes, share[rows, j])
+        _panel(axes, share[rows, j], (width - LABELS) / len(columns) - 0.2)
         name, unit = results[j].replace("_", " "), str(data["result_unit"].values[j])
         axes.set_title(f"{name[0].upper()}{name[1:]}: {_value(float(data['result_value'].values[j]), unit)}")
-        axes.set_xlabel(f"% of {name} per %")
+        axes.set_xlabel("% change for +1 %")
         style.tidy(axes)
         axes.title.set_fontsize(style.TICK + 0.5)
         axes.grid(False, axis="y")
@@ -48,8 +50,8 @@ def tornado(sensitivity: Sensitivity) -> Figure:
     return figure
 
 
-def _panel(axes: Axes, shares: np.ndarray) -> None:
-    """Bars from zero to both sides, each with its number outside its end."""
+def _panel(axes: Axes, shares: np.ndarray, width: float) -> None:
+    """Bars from zero to both sides, each with its number outside its end, on about `width` inches."""
     largest = float(np.nanmax(np.abs(shares)))
     for row, value in enumerate(shares.tolist()):
         if np.isnan(value):
@@ -60,8 +62,9 @@ def _panel(axes: Axes, shares: np.ndarray) -> None:
                   ha="left" if side > 0.0 else "right")  # fmt: skip
     axes.axvline(0.0, color=style.BLACK, linewidth=0.6)
     low, high = min(0.0, float(np.nanmin(shares))), max(0.0, float(np.nanmax(shares)))
-    room = 0.32 * (high - low)  # for the numbers
-    axes.set_xlim(low - (room if low < 0.0 else 0.05 * room), high + room)
+    sides = (low < 0.0) + (high > 0.0)
+    room = (high - low) * NUMBER / (width - sides * NUMBER)
+    axes.set_xlim(low - room if low < 0.0 else -0.03 * high, high + room if high > 0.0 else -0.03 * low)
 
 
 def _signed(value: float) -> str:
@@ -80,16 +83,16 @@ def _label(sensitivity: Sensitivity, row: int) -> str:
 
 def _notes(figure: Figure, sensitivity: Sensitivity, left_out: list[int], without: np.ndarray) -> None:
     data = sensitivity.data
-    notes = [f"{str(data.attrs['title']).split(', ', 1)[1]}. {ANGLES[0].upper()}{ANGLES[1:]}."]
+    said = f"{sensitivity.test.kind} test, state {data.attrs['state']}"
+    notes = [f"{said[0].upper()}{said[1:]}; {ANGLES}."]
     if bool(data["number_assumed"].values.any()):
         notes.append("* assumed, not measured.")
     if left_out:
         names = ", ".join(str(data["number"].values[k]) for k in left_out)
         notes.append(f"No bar, being zero (see the absolute derivatives): {names}.")
     if len(without):
-        notes.append(
-            f"No per cent of a result that is zero: {', '.join(str(data['result'].values[j]) for j in without)}."
-        )
+        zero = ", ".join(str(data["result"].values[j]) for j in without)
+        notes.append(f"No per cent of a result that is zero: {zero}.")
     if sensitivity.verdict != "stable":
         notes.append(f"The state is {sensitivity.verdict}: {sensitivity.reason}.")
     style.note(figure, " ".join(notes))
