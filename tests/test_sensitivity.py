@@ -10,8 +10,10 @@ from muscles import MAGIC, seeded
 
 import mckibben as mk
 from mckibben.experiment import Bench
+from mckibben.model.chamber import law_of
+from mckibben.model.cylinder import cylinder_angle, cylinder_force
 from mckibben.model.parameters import parameters
-from mckibben.observe import OBSERVED, observe
+from mckibben.observe import OBSERVED, observe, peak
 from mckibben.solver.approach import units
 from mckibben.solver.direct import find
 from mckibben.solver.equilibrium import Equilibrium, Held
@@ -24,17 +26,9 @@ PAPER, REFERENCE = mk.presets.paper(), mk.presets.reference()
 OFFSETS, WEIGHTS = np.array([-3, -2, -1, 1, 2, 3]), np.array([-1, 9, -45, 45, -9, 1]) / 60.0
 THIN = PAPER.replace("braid.fibre.diameter", "0.05 mm")
 """Its end layers are 0.05 mm wide."""
-DIMENSIONS = {
-    "m": (1, 0),
-    "m^3": (3, 0),
-    "N": (2, 1),
-    "Pa": (0, 1),
-    "N m^2": (4, 1),
-    "J": (3, 1),
-    "1": (0, 0),
-    "rad": (0, 0),
-}
-"""Powers of length and of stiffness."""
+LENGTHS = {"m": 1, "m^3": 3, "N": 2, "Pa": 0, "N m^2": 4, "J": 3, "1": 0, "rad": 0}
+STIFFNESSES = {"m": 0, "m^3": 0, "N": 1, "Pa": 1, "N m^2": 1, "J": 1, "1": 0, "rad": 0}
+"""Powers of length and of stiffness in each unit."""
 
 
 def held_near_magic(muscle: mk.Muscle, seed: int) -> dict[str, float]:
