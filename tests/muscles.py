@@ -3,6 +3,7 @@
 import math
 from typing import NamedTuple
 
+import numpy as np
 from hypothesis import strategies as st
 
 from mckibben import presets, spec
@@ -62,6 +63,23 @@ def muscles(draw: st.DrawFn, ends: tuple[str, ...] = ("clamped", "pinned")) -> D
         R0, draw(between(2.0, 20.0)) * R0, theta0, N,
         d=draw(between(1e-4, min(1e-3, 0.99 * room))), E=draw(between(0.5e9, 100e9)), nu=draw(between(0.0, 0.5)),
         t0=draw(between(0.3e-3, 3e-3)), c1=c1, c2=c1 * draw(between(0.0, 0.5)), ends=draw(st.sampled_from(ends)),
+    )  # fmt: skip
+
+
+def seeded(seed: int, ends: str = "clamped") -> Drawn:
+    """A plausible muscle by a number, for tests that solve: as `muscles`, without the extremes of every range."""
+    random = np.random.default_rng(seed)
+    R0, theta0, N = (
+        random.uniform(5e-3, 20e-3),
+        math.radians(random.uniform(25.0, 65.0)),
+        2 * int(random.integers(8, 40)),
+    )
+    room = 2.0 * math.pi * R0 * math.sin(theta0) / (N // 2)
+    return Drawn(
+        R0, random.uniform(4.0, 15.0) * R0, theta0, N,
+        d=min(random.uniform(1e-4, 5e-4), 0.9 * room), E=10 ** random.uniform(8.7, 10.5), nu=random.uniform(0.1, 0.45),
+        t0=random.uniform(0.5e-3, 2e-3), c1=10 ** random.uniform(4.0, 5.5), c2=10 ** random.uniform(3.0, 4.0),
+        ends=ends,
     )  # fmt: skip
 
 

@@ -17,12 +17,12 @@ from mckibben.solver.direct import find
 from mckibben.solver.equilibrium import Held
 from mckibben.solver.follow import follow
 from mckibben.solver.path import trace
-from mckibben.solver.placement import _crowding
+from mckibben.solver.placement import crowdings
 from mckibben.solver.problem import evaluate, setting
 from mckibben.solver.stability import stiffness
 from mckibben.survey import survey
 
-COMPILED = (setting, evaluate, follow, stiffness, fields, angle_force, _crowding)
+COMPILED = (setting, evaluate, follow, stiffness, fields, angle_force, crowdings)
 REFERENCE = mk.presets.reference()
 SIZE, OWN = 24, 7
 """Unknowns: the usual number, and one of these tests' own that no other test has compiled before."""
@@ -72,7 +72,7 @@ def test_a_choice_compiles_anew(choice: str, caplog: pytest.LogCaptureFixture) -
     with jax.log_compiles(), caplog.at_level(logging.WARNING):
         assert find(bench.problem(OWN, bench.placement(held)), held).converged
     grown = {function for function, a, b in zip(COMPILED, before, counts(), strict=True) if b > a}
-    assert grown == {setting, evaluate, _crowding} - ({_crowding} if choice == "ends" else set())
+    assert grown == {setting, evaluate, crowdings} - ({crowdings} if choice == "ends" else set())
     assert any("evaluate" in message for message in caplog.messages)
 
 

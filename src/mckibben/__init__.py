@@ -1,5 +1,6 @@
 """Mechanics of McKibben artificial muscles. `import mckibben as mk`; heavy parts load when they are used."""
 
+import sys
 from importlib import import_module
 from typing import Any
 
@@ -16,6 +17,9 @@ _PUBLIC = {
     "mckibben.study.sweep": ("sweep",),
     "mckibben.study.trouble": ("SweepError",),
     "mckibben.datasheet": ("force_map",),
+    "mckibben.differentiable": ("response",),
+    "mckibben.derivative": ("sensitivity",),
+    "mckibben.sensitivities": ("Sensitivity",),
     "mckibben.view.curves": ("plot",),
     "mckibben.result": ("Result", "State"),
     "mckibben.files.case": ("read_case",),
@@ -28,6 +32,8 @@ __all__ = sorted([*_HOME, *_MODULES])
 
 
 def __getattr__(name: str) -> Any:
+    if "jax" in sys.modules and name in __all__:  # whoever uses JAX may give it muscles, which must be pytrees by then
+        import_module("mckibben.model.pytrees")
     if name in _HOME:
         return getattr(import_module(_HOME[name]), name)
     if name in _MODULES:

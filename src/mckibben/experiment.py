@@ -100,17 +100,29 @@ def run(
     Raises:
         SpecError: for a tolerance or discretisation out of range; never for a test that cannot be finished.
     """
-    bench, steps = Bench.of(muscle), test.as_steps(muscle)
-    b = _crowding(bench, steps)
-    for size in sizes_for(discretisation, tolerance):
-        parts = _follow(bench, bench.problem(size, b, discretisation), steps, tolerance, watch or (lambda k, n: None))
-        errors = [float(part.survey.error.max()) for part in parts if part.survey is not None]
-        if max(errors, default=0.0) <= tolerance or any(part.why == INTERRUPTED for part in parts):
-            break
+    bench = Bench.of(muscle)
+    parts = solved(bench, test.as_steps(muscle), tolerance, discretisation, watch or (lambda k, n: None))
     result, notes = report(muscle, test, parts, float(bench.p.H0), thick_wall(muscle))
     for note in notes:
         warnings.warn(note, MuscleWarning, stacklevel=2)
     return result
+
+
+def solved(
+    bench: Bench,
+    steps: tuple[Step, ...],
+    tolerance: float = 1e-6,
+    discretisation: str = "spectral",
+    watch: Watch = lambda k, n: None,
+) -> list[Part]:
+    """The states of every step, on as many unknowns as the tolerance needs."""
+    b = _crowding(bench, steps)
+    for size in sizes_for(discretisation, tolerance):
+        parts = _follow(bench, bench.problem(size, b, discretisation), steps, tolerance, watch)
+        errors = [float(part.survey.error.max()) for part in parts if part.survey is not None]
+        if max(errors, default=0.0) <= tolerance or any(part.why == INTERRUPTED for part in parts):
+            break
+    return parts
 
 
 def _crowding(bench: Bench, steps: tuple[Step, ...]) -> float:

@@ -8,7 +8,7 @@ from typing import Annotated
 
 import typer
 
-from mckibben.app import commands_draw, commands_look, commands_run, commands_sweep
+from mckibben.app import commands_derive, commands_draw, commands_look, commands_run, commands_sweep
 from mckibben.app.console import examples
 
 __all__ = ["app", "main"]
@@ -30,6 +30,7 @@ app = typer.Typer(
 )
 app.command(epilog=commands_run.EPILOG)(commands_run.run)
 app.command(epilog=commands_sweep.EPILOG)(commands_sweep.sweep)
+app.command(epilog=commands_derive.SENSITIVITY)(commands_derive.sensitivity)
 app.command(epilog=commands_look.CHECK)(commands_look.check)
 app.command(epilog=commands_look.PRESETS)(commands_look.presets)
 app.command(epilog=commands_draw.PLOT)(commands_draw.plot)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import io
+from collections.abc import Callable
 from enum import StrEnum
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
@@ -69,7 +70,7 @@ def _figure(result: Result, kind: Kind) -> Figure:
     matplotlib.use("Agg")  # no window, and none needed
     from mckibben.view import curves
 
-    draw = {
+    draw: dict[Kind, Callable[[Result], Figure]] = {
         Kind.auto: curves.plot,
         Kind.profiles: curves.profiles,
         Kind.tension: curves.tension,

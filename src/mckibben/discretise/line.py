@@ -86,23 +86,25 @@ class Line:
         """Material coordinates v [m] of `count` output points, crowded like the mesh itself."""
         return np.asarray(coordinate(_sampling(self, count).x, p, b))
 
-    def profile(self, p: Parameters, b: float, u: Floats, count: int | None = None) -> tuple[Floats, Floats, Floats]:
+    def profile(
+        self, p: Parameters, b: Number, u: Any, count: int | None = None, array: Any = np.asarray
+    ) -> tuple[Any, Any, Any]:
         """(theta, psi, kappa) of solutions u (steps, m) at the nodes, or at the mesh's points: arrays (steps, points).
 
-        Symmetric spaces are mirrored onto the other half.
+        Symmetric spaces are mirrored onto the other half. With `array=jnp.asarray` it can be differentiated.
         """
-        at, c = _sampling(self, count), np.asarray(u)[:, : self.size]
-        rate = np.asarray(angle_rate(c @ _operators(self).shape.T, p))
-        start = float(p.theta0) + (u[:, -1:] if self.ends == "free" else 0.0)
-        theta = start + (rate * np.asarray(self.jacobian(p, b))) @ at.odd_integral.T
-        return theta, c @ at.shape.T, c @ at.slope.T / np.asarray(stretch(at.x, p, b))
+        at, c = _sampling(self, count), array(u)[:, : self.size]
+        rate = array(angle_rate(c @ _operators(self).shape.T, p))
+        start = array(p.theta0) + (u[:, -1:] if self.ends == "free" else 0.0)
+        theta = start + (rate * array(self.jacobian(p, b))) @ at.odd_integral.T
+        return theta, c @ at.shape.T, c @ at.slope.T / array(stretch(at.x, p, b))
 
-    def integral(self, p: Parameters, b: float, values: Floats, count: int | None = None) -> Floats:
+    def integral(self, p: Parameters, b: Number, values: Any, count: int | None = None, array: Any = np.asarray) -> Any:
         """Integral from v = 0 to the nodes (or the mesh's points) of fields given at the mesh's points (steps, points).
 
-        On the half line a field goes on as its mirror image.
+        On the half line a field goes on as its mirror image. With `array=jnp.asarray` it can be differentiated.
         """
-        return np.asarray((values * np.asarray(self.jacobian(p, b))) @ _sampling(self, count).even_integral.T)
+        return array(values * array(self.jacobian(p, b))) @ _sampling(self, count).even_integral.T
 
 
 FORM = Form(state=lambda theta, y, p: (theta, y[0], y[1]), rate=lambda y, p: angle_rate(y[0], p))

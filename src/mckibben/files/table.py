@@ -11,8 +11,9 @@ from typing import Any
 
 from mckibben.files import atomic
 from mckibben.result import STEP, Result
+from mckibben.sensitivities import Sensitivity
 
-__all__ = ["rows", "save_csv"]
+__all__ = ["rows", "save_csv", "save_sensitivity"]
 
 
 def save_csv(result: Result, path: str | PathLike[str], force: bool = False) -> Path:
@@ -24,6 +25,28 @@ def save_csv(result: Result, path: str | PathLike[str], force: bool = False) -> 
     writer.writerow(["state", *(_header(name) for name in STEP)])
     for state, row in enumerate(rows(result)):
         writer.writerow([state, *(_cell(row[name]) for name in STEP)])
+    return atomic.write(path, text.getvalue().encode("utf-8"), force)
+
+
+def save_sensitivity(found: Sensitivity, path: str | PathLike[str], force: bool = False) -> Path:
+    """Write a sensitivity as a table: a row for each number; per result per cents and the derivative in SI units."""
+    data, text = found.data, io.StringIO(newline="")
+    about = data.attrs
+    lines = [about["title"], f"made by mckibben {about['mckibben_version']}", f"{found.verdict}: {found.reason}"]
+    lines += [about["angles"], f"assumed, not measured: {about['assumed'] or 'nothing'}"]
+    for table in ("muscle", "test"):
+        lines += ["", f"the {table} (TOML):", *about[table].splitlines()]
+    for line in [*lines, ""]:
+        text.write(f"# {line}".rstrip() + "\n")
+    results = [str(name) for name in data["result"].values]
+    header = ["number", "value", "unit", "assumed", *(f"{name} [% per %]" for name in results)]
+    units = dict(zip(results, data["result_unit"].values.tolist(), strict=True))
+    writer = csv.writer(text, lineterminator="\n")
+    writer.writerow([*header, *(f"{name} [{units[name]} per unit]" for name in results)])
+    for k in found.order:
+        known = [data[f"number{part}"].values[k].item() for part in ("", "_value", "_unit", "_assumed")]
+        shares = [*data["relative"].values[k].tolist(), *data["absolute"].values[k].tolist()]
+        writer.writerow([*map(_cell, known), *(_cell(None if share != share else share) for share in shares)])
     return atomic.write(path, text.getvalue().encode("utf-8"), force)
 
 

@@ -3,3 +3,5 @@
 import jax
 
 jax.config.update("jax_enable_x64", True)
+
+from . import pytrees as pytrees  # noqa: E402  # spec objects become pytrees with the first use of the model

@@ -1,7 +1,8 @@
 """What the user says: the muscle and the test, immutable and checked, in SI numbers."""
 
-from mckibben.spec.declared import describe, walk
+from mckibben.spec.declared import describe, numbers, walk
 from mckibben.spec.errors import SpecError
+from mckibben.spec.fields import spec_classes
 from mckibben.spec.laws import LAWS, CustomLaw, Gent, Law, MooneyRivlin, NeoHookean, Ogden, Yeoh
 from mckibben.spec.loading import (
     TESTS,
@@ -49,6 +50,8 @@ __all__ = [
     "Test",
     "Yeoh",
     "describe",
+    "numbers",
     "reference_markdown",
+    "spec_classes",
     "walk",
 ]

@@ -10,9 +10,9 @@ from typing import TYPE_CHECKING, Any, Generic, TypeVar
 
 import attrs
 
-from mckibben.units import show
+from mckibben.units import Number, show
 
-__all__ = ["Declared", "Reads", "as_call", "declare", "describe", "evolved", "walk"]
+__all__ = ["Declared", "Reads", "as_call", "declare", "describe", "evolved", "numbers", "walk"]
 
 T = TypeVar("T")
 V = TypeVar("V")
@@ -50,6 +50,8 @@ class Declared:
     options: tuple[str, ...] = ()
     stored: bool = True
     """False for a field that only says how another is read (angle_from)."""
+    static: bool = False
+    """True for a number that decides what is computed (how many states) and cannot be varied a little."""
 
     @property
     def required(self) -> bool:
@@ -116,6 +118,32 @@ def walk(value: Any, prefix: str = "") -> Iterator[tuple[str, Declared, Any]]:
             yield prefix + declared.name, declared, item
 
 
+def numbers(value: Any, prefix: str = "") -> Iterator[tuple[str, Declared, Number]]:
+    """(name, declaration, number) of every single number of a spec object that can be varied.
+
+    Parts, lists and paths are entered: "braid.angle", "chamber.law.mu[1]", "pressure[0]" (just "pressure" where it is
+    one value), "steps[1].length". The order is that of the leaves of the object as a JAX pytree.
+    """
+    for declared in describe(type(value)):
+        item, name = getattr(value, declared.name), f"{prefix}{declared.name}"
+        if item is None or declared.static:
+            continue
+        if declared.kind == "part":
+            yield from numbers(item, f"{name}.")
+        elif declared.kind == "steps":
+            for index, step in enumerate(item):
+                yield from numbers(step, f"{name}[{index}].")
+        elif declared.kind in ("quantity", "count"):
+            yield name, declared, item
+        elif declared.kind == "constants":
+            yield from ((f"{name}.{key}", declared, item[key]) for key in sorted(item))
+        elif declared.kind in ("quantities", "path", "held"):
+            several = item if declared.kind == "quantities" else item.waypoints
+            single = declared.kind != "quantities" and len(several) == 1
+            for index, number in enumerate(several):
+                yield name if single else f"{name}[{index}]", declared, number
+
+
 def as_call(self: Any) -> str:
     """A spec object as the call that makes it, in display units; fields that hold nothing are left out."""
     parts = []
@@ -125,6 +153,6 @@ def as_call(self: Any) -> str:
             value = show(value, declared.display or declared.unit, digits=12)
         elif isinstance(value, StrEnum):
             value = str(value)
-        if declared.stored and value is not None and value != ():
+        if declared.stored and value is not None and not (isinstance(value, tuple) and not value):
             parts.append(f"{declared.name}={value!r}")
     return f"{type(self).__name__}({', '.join(parts)})"

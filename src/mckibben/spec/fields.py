@@ -96,12 +96,13 @@ def count(
     source: str = "",
     advice: str = "",
     default: Any = attrs.NOTHING,
+    static: bool = False,
 ) -> Any:
-    """A whole number, such as how many fibres."""
+    """A whole number, such as how many fibres; `static` where a number in between would mean nothing."""
     return declare(
         Declared(
             kind="count", read=_read_count, meaning=meaning, low=low, high=high, source=source, advice=advice,
-            default=default,
+            default=default, static=static,
         )
     )  # fmt: skip
 

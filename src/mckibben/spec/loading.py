@@ -68,7 +68,7 @@ DEFAULT_POINTS = 21
 def points_field() -> Any:
     return count(
         meaning=f"number of states; by default {DEFAULT_POINTS} on a ramp, the length of a list, 1 if nothing varies",
-        low=1, high=100_000, default=None,
+        low=1, high=100_000, default=None, static=True,
     )  # fmt: skip
 
 

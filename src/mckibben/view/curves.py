@@ -11,7 +11,9 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from ..result import FIELDS, STEP, Result
+from ..sensitivities import Sensitivity
 from . import style
+from .tornado import tornado
 
 MARKS = {"unstable": ("x", style.VERMILLION), "inadmissible": ("s", style.ORANGE)}
 """Marker and colour of states that exist and are not stable."""
@@ -52,13 +54,15 @@ def against(result: Result) -> tuple[np.ndarray, str]:
     return (np.arange(len(result), dtype=float), "State") if name == "state" else (column(result, name), label(name))
 
 
-def plot(result: Result) -> Figure:
-    """The natural picture of a result, by the kind of its test.
+def plot(result: Result | Sensitivity) -> Figure:
+    """The natural picture of a result, by the kind of its test; of a sensitivity the tornado chart.
 
     Isometric and blocked: force against pressure. Isobaric: force against contraction. Isotonic and free contraction:
     contraction (and length) against pressure. Protocol and step: force, length and pressure state by state, and force
     against length. States that are not stable are marked; states that were not reached are gaps, with a note.
     """
+    if isinstance(result, Sensitivity):
+        return tornado(result)
     kind = result.test.kind
     if kind in ("protocol", "step"):
         figure = _plot_protocol(result)
