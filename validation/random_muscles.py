@@ -21,6 +21,7 @@ from sample import Case, draw, muscle_of
 
 import mckibben as mk
 from mckibben.experiment import Bench
+from mckibben.seek import UNSTABLE
 from mckibben.solver.direct import find
 from mckibben.solver.equilibrium import Held
 
@@ -51,6 +52,9 @@ def one(case: Case) -> dict[str, Any]:
     found["miss"] = max(abs(getattr(state, k) - v) / max(abs(v), 1.0 if k == "force" else 0.0) for k, v in pairs(held))
     found["modes"] = None if state.modes is None else [state.modes.length_control, state.modes.force_control,
                                                        state.modes.antisymmetric]  # fmt: skip
+    if state.asymmetric is not None:
+        found["asymmetric"] = {name: float(state.asymmetric.data[name].values) for name in NUMBERS}
+        found["asymmetric"]["verdict"] = str(state.asymmetric.verdict)
     if state.last_good is not None:
         found["last_good"] = last_good(bench, case, state.last_good)
     return {"case": case, "found": found}
@@ -67,11 +71,19 @@ def pairs(held: Held) -> list[tuple[str, float]]:
 
 
 def is_reached(row: dict[str, Any]) -> bool:
-    """Whether the default call gave a state that is stable in its symmetric modes and admissible."""
+    """Whether the default call gave a state that is stable in its symmetric modes and admissible, or told of one."""
     found = row["found"]
+    if UNSTABLE in found["reason"]:
+        return True
     if found["verdict"] == "unstable":
         return bool(found["modes"]["length" not in row["case"]["held"]] == 0)
     return bool(found["verdict"] == "stable")
+
+
+def is_stable(row: dict[str, Any]) -> bool:
+    """Whether the default call gave a stable state, symmetric or the one that it tips to."""
+    found = row["found"]
+    return bool(found["verdict"] == "stable" or found.get("asymmetric", {}).get("verdict") == "stable")
 
 
 def last_good(bench: Bench, case: Case, last: Any) -> dict[str, Any]:
