@@ -4,7 +4,7 @@ from typing import Any
 
 import numpy as np
 
-from .branch import Look
+from .branch import Look, look
 from .caution import before
 from .experiment import Bench, sizes_for
 from .fallback import Else, Way, look_elsewhere, way_there
@@ -81,7 +81,9 @@ def seek(bench: Bench, held: Held, tolerance: float) -> Look:
     problem = bench.problem(sizes_for("spectral", tolerance)[0], bench.placement(held))
     state = find(problem, held)
     if not state.converged and near_extension(bench, held):
-        state = stretched(bench, state, held)
+        near = stretched(bench, state, held, tolerance)
+        if near.converged:
+            return look(near, held)
     return sharpened(bench, state, held, tolerance, again=True)
 
 
@@ -123,7 +125,8 @@ def _instead(
     if way is None:
         return _nothing(bench, muscle, step, held, verdict, found.verdict.reason)
     verdict = Verdict.INADMISSIBLE if verdict == Verdict.INADMISSIBLE else Verdict.NOT_CONVERGED
-    reason = f"no {'stable' if symmetric else 'admissible'} state was found at {_said(held)}: {_ending(way)}{_tried(instead)}{_holds(bench, held)}"
+    lacks = f"no {'stable' if symmetric else 'admissible'} state was found at {_said(held)}"
+    reason = f"{lacks}: {_ending(way)}{_tried(instead)}{_holds(bench, held)}"
     return _nothing(bench, muscle, step, held, verdict, reason, last_good=_last_good(bench, muscle, way))
 
 
