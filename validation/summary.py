@@ -104,7 +104,10 @@ def _trust(rows: list[Row]) -> list[str]:
         ["largest error estimate of a good state", f"{largest['error_estimate']:.1e}"],
         ["calls without a stable state; with a last good state instead", f"{lost}; {len(last)}"],
         ["last good states judged stable, with residual below 1e-10", sum(_sound(one) for one in last)],
-        ["... found again by a fresh search on 96 unknowns, to 1e-6", sum(one["difference"] < 1e-6 for one in last)],
+        [
+            "... found again by a fresh search on 96 or 256 unknowns, to 1e-6",
+            sum(one["difference"] < 1e-6 for one in last),
+        ],
     ]
     return ["", "## Trust", *table(["check", "result"], lines)]
 
