@@ -86,7 +86,7 @@ def _reach(rows: list[Row]) -> list[str]:
         ],
     ]
     head = ["state", "reached by the default call", "reached only by a judge", "share"]
-    note = [f"{unasked} targets were not yet judged."] if unasked else []
+    note = ["", f"{unasked} targets were not yet judged."] if unasked else []
     return ["", "## Reach", *table(head, said), *table(["target", "count", *verdicts], lines), *note]
 
 
