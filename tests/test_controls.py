@@ -49,6 +49,34 @@ def test_a_branch_is_followed_past_its_limit_point():
     assert (curve.data["modes_force_control"].values[good][turn + 1 :] == 1).all()
 
 
+def test_a_volume_controlled_branch_runs_on_where_the_pressure_turns():
+    # with the force held the pressure has a least value along the branch: the volume has none and holds what it cannot
+    step = mk.Step(volume="35.3 cm^3 to 30.5 cm^3", force="-60 N", along="branch", points=60)
+    curve = mk.run(REFERENCE, step)
+    pressure, turn = curve.pressure, int(np.argmin(curve.pressure))
+    assert curve.status == "complete"
+    assert 5 < turn < len(curve) - 5
+    assert (np.diff(curve.volume) < 0.0).all()
+    assert (np.diff(curve.length) < 0.0).all()
+    assert (np.diff(pressure[: turn + 1]) < 0.0).all()
+    assert (np.diff(pressure[turn:]) > 0.0).all()
+    np.testing.assert_allclose(curve.force, -60.0, rtol=1e-9)
+    assert (curve.data["residual"].values < 1e-10).all()
+    # even steps of arclength: the shape changes by much the same from state to state, and never jumps
+    change = np.sqrt((np.diff(curve.data["psi"].values, axis=0) ** 2).mean(axis=1))[:-1]
+    assert change.max() < 3.0 * change.min()
+    assert change.max() < 0.05
+    # energy stored is work done, F dh + P dV, also past the turn
+    stored = curve.data["energy"].values - curve.data["energy"].values[0]
+    np.testing.assert_allclose(stored, curve.data["work"].values, atol=1e-7 * np.ptp(stored))
+    # symmetric shapes never give way under this control; to one side they do from the least pressure on
+    assert (curve.data["modes_force_control"].values == 0).all()
+    assert set(curve.data["modes_antisymmetric"].values[: turn - 1]) == {0}
+    assert set(curve.data["modes_antisymmetric"].values[turn + 1 :]) == {1}
+    state = mk.solve(REFERENCE, volume=float(curve.volume[turn + 4]), force="-60 N")
+    assert state.pressure == pytest.approx(pressure[turn + 4], rel=1e-8)
+
+
 def test_a_branch_without_a_limit_point_is_the_path():
     branch = mk.run(REFERENCE, mk.Step(force="20 N", pressure="0.5 bar to 1 bar", along="branch", points=40))
     state = mk.solve(REFERENCE, force="20 N", pressure=float(branch.pressure[-1]))

@@ -21,10 +21,13 @@ from sample import Case, draw, muscle_of
 
 import mckibben as mk
 from mckibben.experiment import Bench
+from mckibben.seek import UNSTABLE
 from mckibben.solver.direct import find
 from mckibben.solver.equilibrium import Held
 
 LINES, JUDGED = OUT / "random_muscles.jsonl", OUT / "random_muscles_judged.jsonl"
+AGAIN = (96, 256)
+"""Unknowns on which a last good state is sought afresh; the larger number where the smaller does not resolve it."""
 NUMBERS = ("force", "length", "volume", "error_estimate", "residual", "coefficient_tail", "conserved_variation")
 
 
@@ -51,6 +54,9 @@ def one(case: Case) -> dict[str, Any]:
     found["miss"] = max(abs(getattr(state, k) - v) / max(abs(v), 1.0 if k == "force" else 0.0) for k, v in pairs(held))
     found["modes"] = None if state.modes is None else [state.modes.length_control, state.modes.force_control,
                                                        state.modes.antisymmetric]  # fmt: skip
+    if state.asymmetric is not None:
+        found["asymmetric"] = {name: float(state.asymmetric.data[name].values) for name in NUMBERS}
+        found["asymmetric"]["verdict"] = str(state.asymmetric.verdict)
     if state.last_good is not None:
         found["last_good"] = last_good(bench, case, state.last_good)
     return {"case": case, "found": found}
@@ -67,24 +73,36 @@ def pairs(held: Held) -> list[tuple[str, float]]:
 
 
 def is_reached(row: dict[str, Any]) -> bool:
-    """Whether the default call gave a state that is stable in its symmetric modes and admissible."""
+    """Whether the default call gave a state that is stable in its symmetric modes and admissible, or told of one."""
     found = row["found"]
+    if UNSTABLE in found["reason"]:
+        return True
     if found["verdict"] == "unstable":
         return bool(found["modes"]["length" not in row["case"]["held"]] == 0)
     return bool(found["verdict"] == "stable")
 
 
+def is_stable(row: dict[str, Any]) -> bool:
+    """Whether the default call gave a stable state, symmetric or the one that it tips to."""
+    found = row["found"]
+    return bool(found["verdict"] == "stable" or found.get("asymmetric", {}).get("verdict") == "stable")
+
+
 def last_good(bench: Bench, case: Case, last: Any) -> dict[str, Any]:
-    """The last good state, and what a fresh search on twice the unknowns says at the same place."""
+    """The last good state, and what a fresh search on more unknowns says at the same place."""
     axial = "length" if "length" in case["held"] else "force"
     held = Held.of(**{axial: getattr(last, axial), "pressure": last.pressure})
-    again = find(bench.problem(96, placement(bench, held)), held)
     size = max(abs(last.force), 1.0) if axial == "length" else last.length
     other = "force" if axial == "length" else "length"
+    for unknowns in AGAIN:
+        again = find(bench.problem(unknowns, placement(bench, held)), held)
+        difference = abs(getattr(again, other) - getattr(last, other)) / size
+        if difference < 1e-6:
+            break
     return {
         "verdict": str(last.verdict), "length": last.length, "force": last.force, "pressure": last.pressure,
         "residual": float(last.data["residual"].values), "error_estimate": last.error_estimate,
-        "again": worth_of(again, held), "difference": abs(getattr(again, other) - getattr(last, other)) / size,
+        "again": worth_of(again, held), "difference": difference,
     }  # fmt: skip
 
 
@@ -112,14 +130,20 @@ def done() -> dict[int, dict[str, Any]]:
     return rows
 
 
-def write_lines(task: Callable[[Case], dict[str, Any]], cases: list[Case], file: Path, workers: int) -> None:
-    """The task on every case that is not yet in the file."""
+def write_lines(
+    task: Callable[[Case], dict[str, Any]],
+    cases: list[Case],
+    file: Path,
+    workers: int,
+    first: Callable[[], None] | None = None,
+) -> None:
+    """The task on every case that is not yet in the file; each worker does `first` before."""
     known = read(file)
     left = [case for case in cases if case["id"] not in known]
     if not left:
         return
     spawn = multiprocessing.get_context("spawn")
-    with ProcessPoolExecutor(workers, spawn, initializer=warm) as pool, file.open("a", encoding="utf-8") as lines:
+    with ProcessPoolExecutor(workers, spawn, initializer=first) as pool, file.open("a", encoding="utf-8") as lines:
         for job in as_completed([pool.submit(task, case) for case in left]):
             lines.write(json.dumps(job.result()) + "\n")
             lines.flush()
@@ -128,7 +152,7 @@ def write_lines(task: Callable[[Case], dict[str, Any]], cases: list[Case], file:
 def run(count: int, workers: int) -> None:
     """The default call on everything; then the judges wherever it gave no stable state."""
     OUT.mkdir(exist_ok=True)
-    write_lines(safely, [draw(k) for k in range(count)], LINES, workers)
+    write_lines(safely, [draw(k) for k in range(count)], LINES, workers, warm)
     lost = [row["case"] for _, row in sorted(read(LINES).items()) if row["found"]["verdict"] != "stable"]
     write_lines(judged, lost, JUDGED, workers)
 

@@ -5,7 +5,8 @@ import numpy as np
 from scipy.optimize import brentq
 
 from .judge import Judgement, Shape, Verdict, clearance, judge, shape_of
-from .solver.direct import find
+from .model.extension import full_extension
+from .solver.direct import embedded, find
 from .solver.equilibrium import Equilibrium, Held
 from .solver.problem import Problem
 from .solver.stability import Modes, count_modes, stiffness
@@ -13,6 +14,13 @@ from .survey import meridian
 
 STEPS, JUMP = 16, 0.6
 """Steps from one end of a path to the other at first, and the change of psi [rad] that a step may make."""
+
+FOLD = 1e-4
+"""How far before a maximum of the force its last good state lies, over the path: at the maximum itself the length is
+no function of the force."""
+
+BACK = (1e-4, 1e-3, 1e-2, 1e-1)
+"""How far before an end found on fewer unknowns a walk on more sets in, over the path; tried in turn."""
 
 
 @attrs.frozen
@@ -33,13 +41,16 @@ class Look:
 
 def look(state: Equilibrium, held: Held) -> Look:
     """Judge one state."""
+    return _look(state, "volume" not in held.names, "length" in held.names)
+
+
+def _look(state: Equilibrium, pressure_held: bool, length_held: bool) -> Look:
     if not state.converged:
         return Look(state, Judgement.lost(state.message), None, np.nan, np.nan)
     problem = state.problem
     K = stiffness(problem.space, problem.p, problem.b, state.u[None], state.loads[None])
-    modes = count_modes(problem.space, K, pressure_held="volume" not in held.names)[0]
+    modes = count_modes(problem.space, K, pressure_held=pressure_held)[0]
     psi, r, z = (line[0] for line in meridian(problem, state.u[None]))
-    length_held = "length" in held.names
     verdict = judge(modes, shape_of(psi, r, z), length_held)
     return Look(state, verdict, modes, modes.softest(length_held), clearance(psi, z, float(r[0])))
 
@@ -59,22 +70,31 @@ class BranchEnd:
         return self.fraction == 1.0
 
 
+@attrs.frozen
 class _Walk:
-    """Trials along the straight path between two holdings, each started from a state already known."""
+    """Trials along the straight path between two holdings, each started from a state already known.
 
-    def __init__(self, problem: Problem, start: Held, target: Held, shapes: bool) -> None:
-        self.problem, self.start, self.target, self.shapes = problem, start, target, shapes
+    With a force sought, the path is one of lengths, which has no fold where the force is greatest; its states are
+    judged as if the force were held.
+    """
+
+    problem: Problem
+    start: Held
+    target: Held
+    shapes: bool
+    force: float | None = None
 
     def at(self, fraction: float) -> Held:
         a, b = np.asarray(self.start.values), np.asarray(self.target.values)
         first, second = (a + fraction * (b - a)).tolist()
         return Held(self.start.names, (first, second))
 
-    def trial(self, fraction: float, near: Look | None) -> Look:
-        held = self.at(fraction)
-        return look(
-            find(self.problem, held, None if near is None else near.state, radius=1.0 if near is None else 0.3), held
-        )
+    def trial(self, fraction: float, near: Equilibrium | None, leash: float = 2.0 * JUMP) -> Look:
+        radius, leash = (1.0, np.inf) if near is None else (0.3, leash)
+        return self.look(find(self.problem, self.at(fraction), near, radius, leash))
+
+    def look(self, state: Equilibrium) -> Look:
+        return _look(state, "volume" not in self.start.names, self.force is None and "length" in self.start.names)
 
     def good(self, seen: Look) -> bool:
         return seen.good if self.shapes else seen.stiffness > 0.0
@@ -85,38 +105,107 @@ class _Walk:
     def moved(self, a: Look, b: Look) -> float:
         return float(np.abs(self.problem.slopes[0] @ (a.state.u - b.state.u)).max())
 
+    def past(self, seen: Look) -> bool:
+        """Whether a state lies beyond the force that is sought."""
+        if self.force is None:
+            return False
+        shortens = self.target.get("length") < self.start.get("length")
+        return seen.state.force <= self.force if shortens else seen.state.force >= self.force
 
-def branch_end(problem: Problem, start: Held, target: Held, tolerance: float = 1e-9, shapes: bool = True) -> BranchEnd:
+    def end(self, last: Look, fraction: float, cause: Judgement) -> BranchEnd:
+        """The end, said in what the path was asked for."""
+        held = self.at(fraction)
+        if self.force is not None:
+            held = Held.of(force=last.state.force, pressure=last.state.pressure)
+        return BranchEnd(last, held, fraction, cause)
+
+    def arrived(self, near: Look) -> Look:
+        """The state at the force that is sought, from one just beyond it."""
+        held = Held.of(force=self.force, pressure=self.target.get("pressure"))
+        return self.look(find(self.problem, held, near.state, 0.3, JUMP))
+
+
+def branch_end(
+    problem: Problem,
+    start: Held,
+    target: Held,
+    tolerance: float = 1e-9,
+    shapes: bool = True,
+    *,
+    coarse: BranchEnd | None = None,
+    begin: Equilibrium | None = None,
+) -> BranchEnd:
     """Follow good states from `start` to `target` (both hold the same two names) as far as they go.
 
-    The end is found to `tolerance` of the path. Without `shapes` only stability counts, not where the wall lies.
+    The end is found to `tolerance` of the path. Without `shapes` only stability counts, not where the wall lies. With
+    the end of the same path on fewer unknowns, `coarse`, the walk sets in shortly before it. `begin` is a state near
+    the start; the initial cylinder serves otherwise.
     """
     walk = _Walk(problem, start, target, shapes)
-    here, done = walk.trial(0.0, None), 0.0
-    if not walk.good(here):
-        return BranchEnd(None, start, 0.0, here.verdict)
-    step, cause, first = 1.0 / STEPS, here.verdict, here
+    first = walk.look(find(problem, start) if begin is None else find(problem, start, begin, 0.3, 2.0 * JUMP))
+    if not walk.good(first):
+        return BranchEnd(None, start, 0.0, first.verdict)
+    if start.names == ("force", "pressure") and start.get("pressure") == target.get("pressure"):
+        walk = _by_length(walk, first.state)
+    here, done, step = first, 0.0, 1.0 / STEPS
+    if coarse is not None and coarse.last is not None:
+        near = embedded(coarse.last.state, problem)
+        for back in BACK:
+            seen = walk.trial(max(coarse.fraction - back, 0.0), near)
+            if walk.good(seen) and not walk.past(seen):
+                here, done, step = seen, max(coarse.fraction - back, 0.0), back
+                break
+    return _advance(walk, first, here, done, step, tolerance, target)
+
+
+def _by_length(walk: _Walk, first: Equilibrium) -> _Walk:
+    """The walk to a force as one to a length: stable under force control, a muscle is shorter the more it is pushed."""
+    p, force = walk.problem.p, walk.target.get("force")
+    longest = full_extension(float(p.R0), float(p.H0), float(p.theta0), walk.problem.space.basis.ends)
+    far = 0.1 * float(p.H0) if force < first.force else first.length + (1.0 - 1e-6) * (longest - first.length)
+    pressure = walk.target.get("pressure")
+    lengths = [Held.of(length=length, pressure=pressure) for length in (first.length, far)]
+    return attrs.evolve(walk, start=lengths[0], target=lengths[1], force=force)
+
+
+def _advance(
+    walk: _Walk, first: Look, here: Look, done: float, step: float, tolerance: float, target: Held
+) -> BranchEnd:
+    """On from a good state, as far as good states go."""
     while done < 1.0:
         fraction = min(1.0, done + step)
-        seen = walk.trial(fraction, here)
-        near = walk.moved(seen, here) < JUMP
-        if near and walk.good(seen):
+        seen = walk.trial(fraction, here.state)
+        near = seen.state.converged and walk.moved(seen, here) < JUMP
+        if near and walk.good(seen) and not walk.past(seen):
             here, done, step = seen, fraction, min(2.0 * step, 1.0 / STEPS)
             continue
-        cause = cause if walk.good(seen) else seen.verdict
         if near and walk.margin(seen) < 0.0:
-            return _root(walk, here, done, seen, fraction, tolerance)
+            end = _root(walk, here, done, seen, fraction, tolerance)
+            if end.last is None or not walk.past(end.last):
+                return end
+            seen = end.last
+        if near and walk.past(seen):
+            arrived = walk.arrived(seen)
+            if walk.good(arrived):
+                return BranchEnd(arrived, target, 1.0, arrived.verdict)
         step *= 0.5
         if step < tolerance:
-            return BranchEnd(here, walk.at(done), done, _turned(walk, here, first, cause))
+            return walk.end(here, done, _beyond(walk, first, here, done))
+    if walk.force is not None:  # every length was good, and the force was at none of them
+        return walk.end(here, float(np.nextafter(1.0, 0.0)), _beyond(walk, first, here, done))
     return BranchEnd(here, target, 1.0, here.verdict)
 
 
-def _turned(walk: _Walk, here: Look, first: Look, cause: Judgement) -> Judgement:
-    """What ended a path with nothing near beyond its last state: a branch that turns back, if it has gone soft."""
+def _beyond(walk: _Walk, first: Look, here: Look, done: float) -> Judgement:
+    """What ended a path with nothing near beyond its last state.
+
+    A branch that has gone soft turns back; otherwise the verdict on what the search finds a little further on.
+    """
     if here.stiffness > 1e-2 * first.stiffness:
-        return cause
-    control = "length" if "length" in walk.start.names else "force"
+        seen = walk.trial(min(1.0, done + 1e-2 / STEPS), here.state, np.inf)
+        if not walk.good(seen):
+            return seen.verdict
+    control = "force" if walk.force is not None or "length" not in walk.start.names else "length"
     return Judgement(
         Verdict.UNSTABLE, f"the shape gives way under {control} control: the branch turns back", here.verdict.shape
     )
@@ -128,7 +217,7 @@ def _root(walk: _Walk, here: Look, done: float, bad: Look, beyond: float, tolera
 
     def margin(fraction: float) -> float:
         if fraction not in seen:
-            seen[fraction] = walk.trial(fraction, here)
+            seen[fraction] = walk.trial(fraction, here.state)
         return walk.margin(seen[fraction])
 
     brentq(margin, done, beyond, xtol=tolerance, rtol=1e-14)
@@ -136,5 +225,9 @@ def _root(walk: _Walk, here: Look, done: float, bad: Look, beyond: float, tolera
     cause = seen[min(fraction for fraction in seen if fraction > good)]
     verdict = cause.verdict
     if not walk.shapes and cause.modes is not None:
-        verdict = judge(cause.modes, Shape.ORDINARY, "length" in walk.start.names)
-    return BranchEnd(seen[good], walk.at(good), good, verdict)
+        verdict = judge(cause.modes, Shape.ORDINARY, walk.force is None and "length" in walk.start.names)
+    if walk.force is not None and cause.modes is not None and cause.modes.force_control:
+        before = max(done, good - FOLD)
+        margin(before)
+        good = before if walk.good(seen[before]) else good
+    return walk.end(seen[good], good, verdict)

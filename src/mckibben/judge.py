@@ -67,18 +67,32 @@ def shape_of(psi: np.ndarray, r: np.ndarray, z: np.ndarray) -> Shape:
     return Shape.SELF_CONTACT if _crosses(r, z) else Shape.OVERHANG
 
 
+BLOCK = 16
+"""Segments of a polyline that share one bounding box in the search for crossings."""
+
+
 def _crosses(r: np.ndarray, z: np.ndarray) -> bool:
-    """Whether the polyline (r, z) crosses itself."""
-    a, b = np.stack([r[:-1], z[:-1]], 1), np.stack([r[1:], z[1:]], 1)
+    """Whether the polyline (r, z) crosses itself: exact on the segments of blocks whose boxes overlap."""
+    points = np.stack([r, z], 1)
+    a, b = points[:-1], points[1:]
+    first = np.arange(0, len(a), BLOCK)
+    low = np.minimum.reduceat(np.minimum(a, b), first)
+    high = np.maximum.reduceat(np.maximum(a, b), first)
+    overlap = ((low[:, None] <= high[None]) & (low[None] <= high[:, None])).all(axis=2)
+    blocks = np.argwhere(np.triu(overlap))
+    within = np.arange(BLOCK)
+    i, j = np.broadcast_arrays(
+        BLOCK * blocks[:, :1, None] + within[:, None], BLOCK * blocks[:, 1:, None] + within[None, :]
+    )
+    apart = (j > i + 1) & (j < len(a))
+    i, j = i[apart], j[apart]
 
     def side(p: np.ndarray, q: np.ndarray, x: np.ndarray) -> np.ndarray:
         d, e = q - p, x - p
         return np.asarray(d[..., 0] * e[..., 1] - d[..., 1] * e[..., 0])
 
-    A, B, C, D = a[:, None], b[:, None], a[None], b[None]
-    crossing = (side(A, B, C) * side(A, B, D) < 0) & (side(C, D, A) * side(C, D, B) < 0)
-    i, j = np.indices(crossing.shape)
-    return bool((crossing & (np.abs(i - j) > 1)).any())
+    A, B, C, D = a[i], b[i], a[j], b[j]
+    return bool(((side(A, B, C) * side(A, B, D) < 0) & (side(C, D, A) * side(C, D, B) < 0)).any())
 
 
 REASONS = {

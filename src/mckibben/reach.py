@@ -16,8 +16,8 @@ from .spec.text import to_toml
 
 SIZE = 48
 """Half-length unknowns: limits of the reference muscle to 1e-8."""
-DOUBLINGS = 24
-"""Pressures tried upwards when one is sought that holds a length, each twice the last."""
+TRIALS = 12
+"""Pressures tried upwards when one is sought that holds a length, each four times the last."""
 
 
 @attrs.frozen
@@ -110,9 +110,11 @@ def least_pressure(muscle: Muscle, *, length: Any, shapes: bool = True) -> float
     return holding(bench, h, 0.0, shapes=shapes)
 
 
-def holding(bench: Bench, length: float, pressure: float, tolerance: float = 1e-10, shapes: bool = True) -> float:
+def holding(
+    bench: Bench, length: float, pressure: float, tolerance: float = 1e-10, shapes: bool = True, size: int = SIZE
+) -> float:
     """Least pressure at or above `pressure` that holds a length; NaN if none up to some 10 GPa does."""
-    problem = bench.problem(SIZE, bench.placement(Held.of(length=length, pressure=max(pressure, 1e4))))
+    problem = bench.problem(size, bench.placement(Held.of(length=length, pressure=max(pressure, 1e4))))
     low = Held.of(length=length, pressure=pressure)
 
     def holds(held: Held) -> bool:
@@ -122,8 +124,8 @@ def holding(bench: Bench, length: float, pressure: float, tolerance: float = 1e-
 
     if holds(low):
         return pressure
-    for k in range(DOUBLINGS):
-        high = Held.of(length=length, pressure=pressure + 1e3 * 2.0**k)
+    for k in range(TRIALS):
+        high = Held.of(length=length, pressure=pressure + 1e3 * 4.0**k)
         if holds(high):
             return float(branch_end(problem, high, low, tolerance, shapes).held.get("pressure"))
     return float("nan")

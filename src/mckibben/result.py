@@ -163,7 +163,7 @@ class State:
     verdict: Verdict  #: compares equal to its word
     reason: str  #: a sentence that a lab user understands
     modes: Modes | None  #: counts of negative modes
-    last_good: "State | None" = None  #: the last admissible state on the way to one that is not
+    last_good: "State | None" = None  #: the last stable state on the way, where none was found at the target
     asymmetric: "State | None" = None  #: the stable state to which an antisymmetrically unstable one goes
 
     @property

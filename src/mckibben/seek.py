@@ -2,31 +2,29 @@
 
 from typing import Any
 
-import attrs
 import numpy as np
 
-from .branch import Look, branch_end, look
+from .branch import Look, look
 from .caution import before
-from .discretise.line import Line
 from .experiment import Bench, sizes_for
+from .fallback import Else, Way, look_elsewhere, way_there
 from .judge import Verdict
 from .reach import holding
-from .recover import recover
 from .report import Part, report
 from .result import State
-from .solver.direct import find, refine
-from .solver.equilibrium import Equilibrium, Held
-from .solver.stability import stiffness, weakest
+from .sharpen import sharpened
+from .solver.direct import find
+from .solver.equilibrium import Held
 from .spec import Muscle, SpecError, Step
-from .survey import error_estimate, survey
+from .stretched import near_extension, stretched
+from .survey import survey
 from .units import show
 
-NEAR_EXTENSION = 0.98
-"""Fraction of full extension beyond which the force is the better unknown."""
+COARSE = 24
+"""Unknowns with which the pressure that would hold a length is looked for: it is told to three digits."""
 
-
-FULL_LENGTH = 96
-"""Unknowns of asymmetric states, odd and even modes together; twice as many where the tolerance needs them."""
+UNSTABLE = "an unstable state of another shape"
+"""How a state is called that other starts found and no muscle holds."""
 
 
 def solve(
@@ -49,9 +47,10 @@ def solve(
         tolerance: relative error aimed at in force and length.
 
     Returns:
-        A `State` with its `verdict` and `reason`. Where no admissible state exists its numbers are NaN and `last_good`
-        is the last admissible state on the way there; where the symmetric state tips to one side, `asymmetric` is the
-        stable state it goes to.
+        A `State` with its `verdict` and `reason`. A state that is not stable on the direct way is sought in others
+        too, and a stable one is given where any of them finds it. Where no admissible state is found the numbers are
+        NaN, the reason says what was tried, and `last_good` is the last admissible state on the way there; where the
+        symmetric state tips to one side, `asymmetric` is the stable state it goes to.
 
     Raises:
         SpecError: for wrong input only.
@@ -68,61 +67,24 @@ def _state(bench: Bench, muscle: Muscle, step: Step, held: Held, tolerance: floa
     if held.get("length", 0.0) >= bench.longest:
         return _nothing(bench, muscle, step, held, Verdict.NO_EQUILIBRIUM, bench.too_long())
     found = seek(bench, held, tolerance)
-    if found.verdict.verdict == Verdict.STABLE:
+    if found.good:
         return _made(bench, muscle, step, held, found)
-    if found.verdict.verdict == Verdict.UNSTABLE:
-        return _unstable(bench, muscle, step, held, found, tolerance)
-    return _instead(bench, muscle, step, held, found)
+    way = way_there(bench, held, found.state.problem.b, tolerance)
+    if way is not None and way.end.complete and way.end.last is not None:
+        return _made(bench, muscle, step, held, way.end.last)
+    instead = look_elsewhere(bench, held, found, way, tolerance)
+    return _instead(bench, muscle, step, held, found, way, instead)
 
 
 def seek(bench: Bench, held: Held, tolerance: float) -> Look:
     """Straight to a state, on as many unknowns as the tolerance needs."""
-    b = bench.placement(held)
-    sizes = sizes_for("spectral", tolerance)
-    state = _direct(bench, held, sizes[0], b)
-    for size in sizes[1:]:
-        if not state.converged or _error(state) <= tolerance:
-            break
-        finer = refine(state, bench.problem(size, b), held)
-        state = finer if finer.converged else _direct(bench, held, size, b)
-    if not state.converged:  # a coarse space may lack the state
-        state = _direct(bench, held, sizes[-1], b)
-    return look(state, held)
-
-
-def _error(state: Equilibrium) -> float:
-    return float(error_estimate(recover(state.problem, state.u[None], state.loads[None]))[0])
-
-
-def _direct(bench: Bench, held: Held, size: int, b: float) -> Equilibrium:
-    problem = bench.problem(size, b)
-    length = held.get("length")
-    if length is None or length < NEAR_EXTENSION * bench.longest or "pressure" not in held.names:
-        return find(problem, held)
+    problem = bench.problem(sizes_for("spectral", tolerance)[0], bench.placement(held))
     state = find(problem, held)
-    return state if state.converged else _stretched(bench, state, held)
-
-
-def _stretched(bench: Bench, failed: Equilibrium, held: Held) -> Equilibrium:
-    """Near full extension: secant in log F against log(h_max - h), every trial at held force."""
-    problem, length, pressure = failed.problem, held.get("length"), held.get("pressure")
-    gap = np.log(bench.longest - length)
-    near = find(problem, Held.of(length=0.97 * bench.longest, pressure=pressure))
-    if not near.converged or near.force <= 0.0:
-        return failed
-    points: list[tuple[float, float]] = [(np.log(near.force), np.log(bench.longest - near.length))]
-    guess, state = points[0][0] + 1.0, near
-    for _ in range(60):
-        trial = find(problem, Held.of(force=float(np.exp(guess)), pressure=pressure), state)
-        if not trial.converged or trial.length >= bench.longest:
-            return failed
-        points.append((guess, np.log(bench.longest - trial.length)))
-        state = trial
-        if abs(points[-1][1] - gap) < 1e-8:
-            return find(problem, held, state)
-        (x0, y0), (x1, y1) = points[-2:]
-        guess = x1 + np.clip((gap - y1) * (x1 - x0) / (y1 - y0), -2.0, 2.0)
-    return failed
+    if not state.converged and near_extension(bench, held):
+        near = stretched(bench, state, held, tolerance)
+        if near.converged:
+            return look(near, held)
+    return sharpened(bench, state, held, tolerance, again=True)
 
 
 def _made(bench: Bench, muscle: Muscle, step: Step, held: Held, found: Look, **more: Any) -> State:
@@ -141,66 +103,88 @@ def _nothing(bench: Bench, muscle: Muscle, step: Step, held: Held, verdict: Verd
     return State(result, verdict, reason, None, **more)
 
 
-def _unstable(bench: Bench, muscle: Muscle, step: Step, held: Held, found: Look, tolerance: float) -> State:
-    """A symmetric state that tips to one side: also the asymmetric state that it goes to."""
-    reason, other = found.verdict.reason, None
-    tipped = tip(bench, found, held, tolerance)
-    if tipped is not None and tipped.good:
-        other = _made(bench, muscle, step, held, tipped)
-        reason += f"; the stable asymmetric state carries {show(tipped.state.force, 'N', 6)}"
+def _instead(
+    bench: Bench, muscle: Muscle, step: Step, held: Held, found: Look, way: Way | None, instead: Else
+) -> State:
+    """The best of what was found where the direct search gave nothing stable, and what was tried."""
+    symmetric, asymmetric = instead.symmetric, instead.asymmetric
+    other = None if asymmetric is None else _made(bench, muscle, step, held, asymmetric)
+    if symmetric is not None and symmetric.good:
+        reason = symmetric.verdict.reason + "; found from another shape than rest"
+        if way is not None:
+            reason += f": on the way there {_ending(way)}"
+        return _made(bench, muscle, step, held, symmetric, reason=reason)
+    if symmetric is not None and (symmetric is found or other is not None):
+        return _unstable(bench, muscle, step, held, found, way, instead, other)
+    if asymmetric is not None:
+        reason = asymmetric.verdict.reason + "; an asymmetric state"
+        if way is not None:
+            reason += f": on the way there {_ending(way)}"
+        return _made(bench, muscle, step, held, asymmetric, reason=reason)
+    verdict = found.verdict.verdict
+    if way is None:
+        return _nothing(bench, muscle, step, held, verdict, found.verdict.reason)
+    verdict = Verdict.INADMISSIBLE if verdict == Verdict.INADMISSIBLE else Verdict.NOT_CONVERGED
+    lacks = f"no {'stable' if symmetric else 'admissible'} state was found at {_said(held)}"
+    reason = f"{lacks}: {_ending(way)}{_tried(instead)}{_holds(bench, held)}"
+    return _nothing(bench, muscle, step, held, verdict, reason, last_good=_last_good(bench, muscle, way))
+
+
+def _unstable(
+    bench: Bench,
+    muscle: Muscle,
+    step: Step,
+    held: Held,
+    found: Look,
+    way: Way | None,
+    instead: Else,
+    other: State | None,
+) -> State:
+    """A symmetric state that tips to one side, and the asymmetric state that it goes to."""
+    symmetric, tipped = instead.symmetric, instead.tipped
+    assert symmetric is not None
+    reason = symmetric.verdict.reason
+    if other is not None:
+        reason += f"; the stable asymmetric state carries {show(other.force, 'N', 6)}"
     elif tipped is not None:
         reason += f"; no admissible asymmetric state was found either ({tipped.verdict.reason})"
-    return _made(bench, muscle, step, held, found, reason=reason, asymmetric=other)
+    if symmetric is not found and way is not None:
+        reason += f"; found from another shape than rest: on the way there {_ending(way)}"
+    last = None if other is not None else _last_good(bench, muscle, way)
+    return _made(bench, muscle, step, held, symmetric, reason=reason, asymmetric=other, last_good=last)
 
 
-def tip(bench: Bench, found: Look, held: Held, tolerance: float) -> Look | None:
-    """The state that an antisymmetrically unstable one goes to, on the full length; None if it has no such mode."""
-    state = found.state
-    basis = state.problem.space.basis
-    if not isinstance(basis, Line) or not basis.half or bench.ends == "free":
+def _ending(way: Way) -> str:
+    """Where the good states on the way to a target end, and why."""
+    axial, unit = ("length", "m") if "length" in way.first.names else ("force", "N")
+    if way.end.last is None:
+        return f"there is no good state at {_said(way.first)}, where {way.end.cause.reason}"
+    at = show(way.end.held.get(axial), unit, 5)
+    return f"from {_said(way.first)} good states end at {at}, where {way.end.cause.reason}"
+
+
+def _tried(instead: Else) -> str:
+    """What other starts gave: nothing, or a state that no muscle holds because it tips to nothing admissible."""
+    if instead.symmetric is not None:
+        force = show(instead.symmetric.state.force, "N", 5)
+        return f"; {UNSTABLE} carries {force}, but gives way to one side, to no admissible shape that was found"
+    return f"; {instead.tried} searches from other starts found none either" if instead.tried else ""
+
+
+def _holds(bench: Bench, held: Held) -> str:
+    """What pressure holds a length that this one does not."""
+    if "length" not in held.names:
+        return ""
+    enough = holding(bench, held.get("length"), held.get("pressure"), 1e-4, size=COARSE)
+    return f"; {show(enough, 'Pa', 3)} or more holds {show(held.get('length'), 'm', 5)}" if np.isfinite(enough) else ""
+
+
+def _last_good(bench: Bench, muscle: Muscle, way: Way | None) -> State | None:
+    if way is None or way.end.last is None:
         return None
-    space, b = state.problem.space, state.problem.b
-    mode, value = weakest(stiffness(space, bench.p, b, state.u[None], state.loads[None]))
-    if value >= 0.0:
-        return None
-    problem = bench.problem(FULL_LENGTH, b, modes="all")
-    u, kick, half = np.zeros(FULL_LENGTH), np.zeros(FULL_LENGTH), FULL_LENGTH // 2
-    shared = min(half, basis.size)
-    u[1::2][:shared], kick[0::2][:shared] = state.u[:shared], mode[:shared]
-    slope = float(np.abs(problem.slopes[0] @ kick).max())
-    start = attrs.evolve(state, problem=problem, u=u + 0.1 * kick / slope)
-    tipped = find(problem, held, start, radius=0.3)
-    if tipped.converged and _error(tipped) > tolerance:
-        finer = refine(tipped, bench.problem(2 * FULL_LENGTH, b, modes="all"), held)
-        tipped = finer if finer.converged else tipped
-    return look(tipped, held)
-
-
-def _instead(bench: Bench, muscle: Muscle, step: Step, held: Held, found: Look) -> State:
-    """No admissible state: the last good one on the pressure-first path, where it ends and why."""
-    axial = "length" if "length" in held.names else "force"
-    verdict = found.verdict.verdict
-    if "pressure" not in held.names or axial not in held.names:
-        return _nothing(bench, muscle, step, held, verdict, found.verdict.reason)
-    pressure = held.get("pressure")
-    first = Held.of(**{axial: float(bench.p.H0) if axial == "length" else 0.0, "pressure": pressure})
-    end = branch_end(bench.problem(48, found.state.problem.b), first, held, 1e-8)
-    if end.complete and end.last is not None:
-        return _made(bench, muscle, step, held, end.last)
-    if end.last is None:
-        return _nothing(bench, muscle, step, held, verdict, f"no good state at {_said(first)}: {end.cause.reason}")
-    reason = (
-        f"no admissible state at {_said(held)}: from {_said(first)} good states end at "
-        f"{show(end.held.get(axial), 'm' if axial == 'length' else 'N', 5)}, where {end.cause.reason}"
-    )
-    if axial == "length":
-        enough = holding(bench, held.get("length"), pressure, 1e-4)
-        if np.isfinite(enough):
-            reason += f"; {show(enough, 'Pa', 3)} or more holds {show(held.get('length'), 'm', 5)}"
-    last_step = Step(**dict(zip(end.held.names, end.held.values, strict=True)))
-    last = _made(bench, muscle, last_step, end.held, end.last)
-    verdict = Verdict.INADMISSIBLE if verdict == Verdict.INADMISSIBLE else Verdict.NOT_CONVERGED
-    return _nothing(bench, muscle, step, held, verdict, reason, last_good=last)
+    held = way.end.held
+    step = Step(**dict(zip(held.names, held.values, strict=True)))
+    return _made(bench, muscle, step, held, way.end.last)
 
 
 def _before(muscle: Muscle, held: Held) -> list[str]:

@@ -23,7 +23,8 @@ def branch(problem: Problem, start: Equilibrium, path: list[Held], watch: Watch 
     varied = int(np.argmax(np.abs(last - first)))
     select, span = path[0].select(), abs(last[varied] - first[varied])
     fixed, free, value = select[1 - varied], select[varied], first[1 - varied]
-    weights = _weights(problem, span)
+    loads_vary = path[0].names[varied] in ("force", "pressure")
+    weights = _weights(problem, span if loads_vary else max(1.0, float(np.abs(start.loads[[LENGTH, VOLUME]]).max())))
     n = len(path)
     u, loads, counts = np.full((n, len(start.u)), np.nan), np.full((n, 4), np.nan), np.zeros(n, int)
     w = np.concatenate([start.u, start.loads[[LENGTH, VOLUME]]])
@@ -54,12 +55,16 @@ def branch(problem: Problem, start: Equilibrium, path: list[Held], watch: Watch 
     return Trace(problem, u, loads, counts, reached, message)
 
 
-def _weights(problem: Problem, span: float) -> np.ndarray:
-    """Norm on (u, force, pressure): the metric of the shape, and the loads over the range to be walked."""
+def _weights(problem: Problem, size: float) -> np.ndarray:
+    """Norm on (u, force, pressure): the metric of the shape, and the loads over a size.
+
+    That size is the range to be walked where a load is varied, and that of the loads themselves where a length or a
+    volume is: its range says nothing of them.
+    """
     m = problem.space.basis.unknowns
     weights = np.zeros((m + 2, m + 2))
     weights[:m, :m] = problem.metric()
-    weights[m, m] = weights[m + 1, m + 1] = 1.0 / max(span, 1e-6) ** 2
+    weights[m, m] = weights[m + 1, m + 1] = 1.0 / max(size, 1e-6) ** 2
     return weights
 
 

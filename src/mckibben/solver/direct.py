@@ -10,19 +10,24 @@ from .problem import CLOSURE, LENGTH, VOLUME, Problem
 from .trust import Solved, Task, minimise
 
 
-def find(problem: Problem, held: Held, start: Equilibrium | None = None, radius: float = 1.0) -> Equilibrium:
+def find(
+    problem: Problem, held: Held, start: Equilibrium | None = None, radius: float = 1.0, leash: float = np.inf
+) -> Equilibrium:
     """State with two quantities held, sought from `start` (same space) or from the initial cylinder.
 
+    A search whose slopes change by more than `leash` [rad] is given up: what it would find is not near its start.
     Where length and force are both held, or volume and pressure, the state is no constrained minimum; it is found as
     the root of the one-parameter family of minima.
     """
     if set(held.names) in ({"length", "force"}, {"volume", "pressure"}):
         return _find_root(problem, held, start)
     u = np.zeros(problem.space.basis.unknowns) if start is None else start.u
-    return _minimum(problem, held, u, np.zeros(4) if start is None else start.loads, radius)
+    return _minimum(problem, held, u, np.zeros(4) if start is None else start.loads, radius, leash)
 
 
-def _minimum(problem: Problem, held: Held, u: np.ndarray, guess: np.ndarray, radius: float) -> Equilibrium:
+def _minimum(
+    problem: Problem, held: Held, u: np.ndarray, guess: np.ndarray, radius: float, leash: float
+) -> Equilibrium:
     targets = dict(zip(held.names, held.targets(problem), strict=True))
     loads = np.concatenate([[1.0], guess[1:]])
     for name, k in (("force", LENGTH), ("pressure", VOLUME)):
@@ -42,6 +47,7 @@ def _minimum(problem: Problem, held: Held, u: np.ndarray, guess: np.ndarray, rad
         metric=problem.metric(),
         largest_change=lambda du: float(np.abs(slope @ du).max()),
         admissible=inside,
+        leash=leash,
     )
     return equilibrium(problem, minimise(task, u, radius))
 
@@ -90,12 +96,16 @@ def _find_root(problem: Problem, held: Held, start: Equilibrium | None) -> Equil
 
 
 def refine(coarse: Equilibrium, problem: Problem, held: Held) -> Equilibrium:
-    """The same state on a larger space of the same kind and placement: the series are nested."""
-    size = coarse.problem.space.basis.size
+    """The same state on a larger space of the same kind and placement."""
+    fine = find(problem, held, embedded(coarse, problem), radius=0.1)
+    return attrs.evolve(fine, iterations=fine.iterations + coarse.iterations)
+
+
+def embedded(coarse: Equilibrium, problem: Problem) -> Equilibrium:
+    """A state as a start on a larger (or smaller) space of the same kind and placement: the series are nested."""
+    size = min(coarse.problem.space.basis.size, problem.space.basis.size)
     u = np.zeros(problem.space.basis.unknowns)
     u[:size] = coarse.u[:size]
-    if len(coarse.u) > size:
+    if problem.space.basis.unknowns > problem.space.basis.size:
         u[-1] = coarse.u[-1]
-    start = attrs.evolve(coarse, problem=problem, u=u)
-    fine = find(problem, held, start, radius=0.1)
-    return attrs.evolve(fine, iterations=fine.iterations + coarse.iterations)
+    return attrs.evolve(coarse, problem=problem, u=u)

@@ -48,6 +48,7 @@ class Task:
     metric: Floats  #: (m, m) norm of a step
     largest_change: Callable[[Floats], float]  #: largest change of a field [rad] in a step
     admissible: Callable[[Any], bool]  #: whether the energy is defined at a state
+    leash: float = np.inf  #: largest change [rad] from the start: a search that goes further is given up
 
 
 @attrs.frozen
@@ -101,6 +102,8 @@ def minimise(task: Task, u: Floats, radius: float = 1.0, limit: int = 200, toler
             radius = 0.25 * min(radius, length)
             continue
         point = trial
+        if task.largest_change(point.u - u) > task.leash:
+            return Solved(point.u, point.loads, False, point.residual, count, "nothing near the start")
         if actual > 0.75 * predicted and length > 0.8 * radius:
             radius = min(2.5 * radius, 10.0)
         elif actual < 0.25 * predicted:
