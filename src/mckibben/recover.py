@@ -9,14 +9,13 @@ the costate of theta:
                      - [dw_f/dtheta - (dw_f/dtheta')'] sin(theta0) cos(theta)
 """
 
-from functools import partial
-
 import attrs
 import jax
 import jax.numpy as jnp
 import numpy as np
 from jaxtyping import Array, Float
 
+from .kernel import kernel
 from .model.chamber import chamber_density
 from .model.energy import stored
 from .model.fibres import fibre_densities
@@ -82,7 +81,7 @@ def _fields(
     }  # fmt: skip
 
 
-@partial(jax.jit, static_argnums=0)
+@kernel
 def fields(
     law: Law,
     p: Parameters,
@@ -98,7 +97,7 @@ def fields(
     return jax.vmap(along, (0, 0, 0, 0, 0, 0, None, None))(theta, psi, kappa, costate, F, P, p, law)
 
 
-@partial(jax.jit, static_argnums=0)
+@kernel
 def angle_force(
     law: Law,
     p: Parameters,

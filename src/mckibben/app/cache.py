@@ -7,14 +7,14 @@ be unpacked later. JAX then warns and compiles anew, but never replaces it. `kep
 from __future__ import annotations
 
 import os
-import platform
 import re
 import warnings
-import zlib
 from collections.abc import Iterator
 from contextlib import contextmanager, suppress
 from importlib.metadata import version
 from pathlib import Path
+
+from mckibben import kept as kept_files
 
 __all__ = ["folder", "kept", "size", "use"]
 
@@ -30,16 +30,7 @@ def folder() -> Path:
         return Path(given)
     from platformdirs import user_cache_dir
 
-    return Path(user_cache_dir("mckibben", appauthor=False)) / f"jax-{version('jax')}-{_processor()}"
-
-
-def _processor() -> str:
-    """The processor with its extensions: code compiled for another one may not run, and home folders are shared."""
-    features = platform.processor().encode()
-    with suppress(OSError):
-        lines = Path("/proc/cpuinfo").read_bytes().splitlines()
-        features = next((line for line in lines if line.lower().startswith((b"flags", b"features"))), features)
-    return f"{platform.machine() or 'unknown'}-{zlib.crc32(features):08x}"
+    return Path(user_cache_dir("mckibben", appauthor=False)) / f"jax-{version('jax')}-{kept_files.processor()}"
 
 
 def use() -> Path | None:
@@ -73,7 +64,13 @@ def kept() -> Iterator[None]:
     place = use()
     with warnings.catch_warnings(record=True) as caught:
         warnings.filterwarnings("always", message=_TROUBLE)
-        yield
+        if place is None:
+            yield
+        else:
+            from mckibben.kernel import keeping
+
+            with keeping(place / "kernels"):
+                yield
     trouble = [warning for warning in caught if re.match(_TROUBLE, str(warning.message))]
     damaged = any(str(warning.message).startswith("Error reading") for warning in trouble)
     if damaged and place is not None and "JAX_COMPILATION_CACHE_DIR" not in os.environ:

@@ -4,7 +4,6 @@ Three counts: symmetric modes under length control, symmetric modes under force 
 change neither length nor volume to first order, so the control does not matter to them).
 """
 
-from functools import partial
 from typing import NamedTuple
 
 import attrs
@@ -16,6 +15,7 @@ from jaxtyping import Array, Float
 from ..discretise.assemble import carry, localise
 from ..discretise.line import Line
 from ..discretise.mesh import values
+from ..kernel import kernel
 from ..model.parameters import Number, Parameters
 from .problem import CLOSURE, LENGTH, VOLUME, Space
 
@@ -31,7 +31,7 @@ class Stiffness(NamedTuple):
     closure: Float[Array, "n a"]
 
 
-@partial(jax.jit, static_argnums=0)
+@kernel
 def stiffness(space: Space, p: Parameters, b: Number, u: Float[Array, "n m"], loads: Float[Array, "n 4"]) -> Stiffness:
     """Tangent stiffness of states u under loads (1, force, pressure, closure), dimensionless."""
     rows = jnp.concatenate([jnp.ones((len(u), 1)), -loads[:, 1:]], axis=1)[:, None]
