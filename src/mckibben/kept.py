@@ -16,6 +16,7 @@ import tempfile
 from collections.abc import Callable
 from contextlib import suppress
 from functools import cache, lru_cache
+from importlib.metadata import version
 from pathlib import Path
 from typing import Any
 
@@ -62,11 +63,10 @@ def source() -> str:
 def surroundings(settings: tuple[tuple[str, str], ...]) -> str:
     """Versions, processor and settings, as text."""
     import jax
-    import jaxlib
 
     device = jax.devices()[0]
     flags = [(name, os.environ.get(name, "")) for name in ("XLA_FLAGS", "LIBTPU_INIT_ARGS")]
-    versions = (jax.__version__, jaxlib.__version__, sys.version, platform.platform(), processor())
+    versions = (jax.__version__, version("jaxlib"), sys.version, platform.platform(), processor())
     return repr((versions, device.platform, device.device_kind, len(jax.devices()), flags, settings))
 
 
@@ -117,7 +117,9 @@ def read(file: Path) -> Callable[..., Any] | None:
         return None
     _find_lapack()
     try:
-        return serialize_executable.deserialize_and_load(*pickle.loads(body), execution_devices=jax.devices()[:1])
+        serialized, in_tree, out_tree = pickle.loads(body)
+        devices = jax.devices()[:1]
+        return serialize_executable.deserialize_and_load(serialized, in_tree, out_tree, execution_devices=devices)
     except Exception:  # whatever another build of JAX does not like: it is compiled anew
         return None
 

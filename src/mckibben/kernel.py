@@ -5,21 +5,20 @@ with the least optimisation: a single curve takes some milliseconds more, and th
 """
 
 import functools
+import secrets
 import threading
 from collections.abc import Callable, Iterator
 from concurrent.futures import Future, ThreadPoolExecutor
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from pathlib import Path
-from typing import Any, Generic, ParamSpec, TypeVar
+from typing import Any, NamedTuple
 
 import attrs
 import jax
 import jax.numpy as jnp
+import numpy as np
 
 from . import kept
-
-P = ParamSpec("P")
-R = TypeVar("R")
 
 OPTIONS: dict[str, Any] = {"xla_cpu_use_fusion_emitters": False}
 """For repeated use: with the former emitters of loops XLA compiles in two thirds of the time, to faster code."""
@@ -46,7 +45,7 @@ def keeping(folder: Path) -> Iterator[None]:
         yield
         return
     before = _place
-    with ThreadPoolExecutor(max_workers=1, thread_name_prefix="kernels") as pool:
+    with ThreadPoolExecutor(max_workers=2, thread_name_prefix="kernels") as pool:
         _place = _Place(folder, pool)
         try:
             yield
@@ -55,63 +54,103 @@ def keeping(folder: Path) -> Iterator[None]:
             pool.shutdown(wait=False, cancel_futures=True)
 
 
-class Kernel(Generic[P, R]):
+class _Kind(NamedTuple):
+    """One executable of a kernel."""
+
+    folder: Path
+    static: Any
+    tree: Any
+    shapes: tuple[Any, ...]
+
+
+def _shapes(leaves: list[Any]) -> tuple[Any, ...]:
+    return tuple((np.shape(leaf), jnp.result_type(leaf)) for leaf in leaves)
+
+
+class Kernel:
     """A function compiled for each static first argument and each set of shapes; the other arguments are arrays."""
 
-    def __init__(self, function: Callable[P, R]) -> None:
+    def __init__(self, function: Callable[..., Any]) -> None:
         functools.update_wrapper(self, function)
-        self._inside = jax.jit(function, static_argnums=0)  # within other compiled functions, which set the options
-        self._jit = jax.jit(function, static_argnums=0, compiler_options=OPTIONS)
+        self._name = f"{function.__module__}.{function.__qualname__}"
+        self._function = function
+        self._inside: Any = jax.jit(function, static_argnums=0)  # within other compiled functions
+        self._jit: Any = jax.jit(function, static_argnums=0, compiler_options=OPTIONS)
         self._kept: dict[Any, Future[Any]] = {}
         self._lock = threading.Lock()
         self.lower = self._jit.lower
 
-    def __call__(self, *args: P.args, **kwargs: P.kwargs) -> R:
-        static, *arrays = args
+    def __call__(self, *args: Any) -> Any:
+        static, arrays = args[0], args[1:]
         leaves, tree = jax.tree.flatten(arrays)
-        if kwargs or any(isinstance(leaf, jax.core.Tracer) for leaf in leaves):
-            return self._inside(*args, **kwargs)
-        compiled = None if _place is None else self._find(static, leaves, tree)
-        return self._jit(*args) if compiled is None else compiled(*arrays)
+        if any(isinstance(leaf, jax.core.Tracer) for leaf in leaves):
+            return self._inside(*args)
+        if _place is None:
+            return self._jit(*args)
+        kind = _Kind(_place.folder, static, tree, _shapes(leaves))
+        found = self._find(kind)
+        if found is not None:
+            try:
+                return jax.block_until_ready(found(*arrays))
+            except (TypeError, ValueError, jax.errors.JaxRuntimeError):  # read, but not what it should be
+                self._drop(kind)
+        return self._jit(*args)
 
-    def prepare(self, *args: Any) -> None:
+    def prepare(self, static: Any, *arrays: Any) -> None:
         """Have the kernel read or compiled in the background, where kernels are kept; arrays count by shape alone."""
         if _place is not None:
-            leaves, tree = jax.tree.flatten(args[1:])
-            _place.pool.submit(self._find, args[0], leaves, tree)
+            leaves, tree = jax.tree.flatten(arrays)
+            _place.pool.submit(self._find, _Kind(_place.folder, static, tree, _shapes(leaves)))
 
-    def _find(self, static: Any, leaves: list[Any], tree: Any) -> Any:
-        """The executable, or None where it cannot be kept."""
-        place, shapes = _place, tuple((jnp.shape(leaf), jnp.result_type(leaf)) for leaf in leaves)
-        if place is None:
-            return None
-        index = (place.folder, static, tree, shapes)
+    def _find(self, kind: _Kind) -> Any:
+        """The executable, made once and waited for by others; None where it cannot be kept."""
         with self._lock:
-            known = self._kept.get(index)
+            known = self._kept.get(kind)
             if known is None:
-                mine = self._kept[index] = Future()
+                mine = self._kept[kind] = Future()
         if known is not None:
             return known.result()
-        made = None
+        found = None
         try:
-            made = self._made(place.folder, static, shapes, tree)
+            file = self._file(kind)
+            if file is not None:
+                found = kept.read(file)
+                if found is None:
+                    found = self._compile(kind)
+                    kept.write(file, found)
         finally:
-            mine.set_result(made)
-        return made
+            mine.set_result(found)
+        return found
 
-    def _made(self, folder: Path, static: Any, shapes: tuple[Any, ...], tree: Any) -> Any:
-        """The executable, read or compiled and written."""
+    def _file(self, kind: _Kind) -> Path | None:
         try:
-            name = kept.key(f"{self.__module__}.{self.__qualname__}", static, (str(tree), shapes), QUICK)
+            key = kept.key(self._name, kind.static, (str(kind.tree), kind.shapes), QUICK)
         except kept.UnkeepableError:
             return None
-        file = folder / f"{self.__name__.strip('_')}-{name}{kept.SUFFIX}"
-        found = kept.read(file)
-        if found is None:
-            arrays = jax.tree.unflatten(tree, [jax.ShapeDtypeStruct(*shape) for shape in shapes])
-            found = self.lower(static, *arrays).compile(compiler_options=QUICK)
-            kept.write(file, found)
-        return found
+        return kind.folder / f"{self._function.__name__.strip('_')}-{key}{kept.SUFFIX}"
+
+    def _drop(self, kind: _Kind) -> None:
+        """Neither use nor keep an executable again."""
+        file = self._file(kind)
+        if file is not None:
+            with suppress(OSError):
+                file.unlink()
+        nothing: Future[Any] = Future()
+        nothing.set_result(None)
+        self._kept[kind] = nothing
+
+    def _compile(self, kind: _Kind) -> Any:
+        """Compiled for one use, under a name of its own.
+
+        JAX's own cache must not know the name: what it reads from there is a copy that cannot be written again.
+        """
+
+        def once(*args: Any) -> Any:
+            return self._function(*args)
+
+        once.__name__ = f"{self._function.__name__}_{secrets.token_hex(4)}"
+        arrays = jax.tree.unflatten(kind.tree, [jax.ShapeDtypeStruct(*shape) for shape in kind.shapes])
+        return jax.jit(once, static_argnums=0).lower(kind.static, *arrays).compile(compiler_options=QUICK)
 
     def _cache_size(self) -> int:
         return self._jit._cache_size() + self._inside._cache_size() + len(self._kept)
@@ -123,6 +162,6 @@ class Kernel(Generic[P, R]):
         self._kept.clear()
 
 
-def kernel(function: Callable[P, R]) -> Kernel[P, R]:
+def kernel(function: Callable[..., Any]) -> Kernel:
     """Compile a function whose first argument is static (hashable) and whose others are arrays."""
     return Kernel(function)

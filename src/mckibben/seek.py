@@ -9,7 +9,6 @@ from .branch import Look, branch_end, look
 from .caution import before
 from .discretise.line import Line
 from .experiment import Bench, sizes_for
-from .judge import Verdict
 from .reach import holding
 from .recover import recover
 from .report import Part, report
@@ -20,6 +19,7 @@ from .solver.stability import stiffness, weakest
 from .spec import Muscle, SpecError, Step
 from .survey import error_estimate, survey
 from .units import show
+from .verdict import Verdict
 
 NEAR_EXTENSION = 0.98
 """Fraction of full extension beyond which the force is the better unknown."""

@@ -46,7 +46,7 @@ def derivatives(density: Pointwise, x: Float[Array, " d"]) -> tuple[Array, Array
         (value, slope), (_, bend) = jax.jvp(lambda y: jax.jvp(density, (y,), (first,)), (x,), (second,))
         return value, slope, bend
 
-    value, slope, bend = jax.vmap(along, out_axes=(None, 0, 0))(unit[rows], unit[columns])
+    value, slope, bend = jax.vmap(along, out_axes=(None, 0, 0))(jnp.asarray(unit[rows]), jnp.asarray(unit[columns]))
     return value, slope[pair.diagonal()].T, jnp.moveaxis(bend[pair], -1, 0)
 
 

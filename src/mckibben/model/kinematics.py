@@ -7,17 +7,19 @@ bulge overhang its fitting; inextensibility (Eqs. 11-12) then reads theta' = -si
 
 import jax.numpy as jnp
 
-from .parameters import Number, Parameters
+from .parameters import Number, Parameters, functions
 
 
 def radius(theta: Number, p: Parameters) -> Number:
     """Current radius r [m] (Eq. 11)."""
-    return p.R0 * jnp.cos(theta) / jnp.cos(p.theta0)
+    f = functions(theta, p.theta0)
+    return p.R0 * f.cos(theta) / f.cos(p.theta0)
 
 
 def meridian_stretch(theta: Number, p: Parameters) -> Number:
     """Meridian stretch s = |d(r, z)/dv| (square root of G in Eq. 5, by Eq. 10 corrected)."""
-    return jnp.sin(theta) / jnp.sin(p.theta0)
+    f = functions(theta, p.theta0)
+    return f.sin(theta) / f.sin(p.theta0)
 
 
 def stretches(theta: Number, p: Parameters) -> tuple[Number, Number, Number]:
@@ -28,12 +30,13 @@ def stretches(theta: Number, p: Parameters) -> tuple[Number, Number, Number]:
 
 def angle_rate(psi: Number, p: Parameters) -> Number:
     """theta' = d theta/dv [rad/m] that keeps the fibres inextensible at slope psi (Eq. 12)."""
-    return -jnp.sin(psi) / (p.R0 * jnp.tan(p.theta0))
+    f = functions(psi, p.theta0)
+    return -f.sin(psi) / (p.R0 * f.tan(p.theta0))
 
 
 def height_rate(theta: Number, psi: Number, p: Parameters) -> Number:
     """z' = dz/dv, the axial length per unit v (Eq. 12)."""
-    return meridian_stretch(theta, p) * jnp.cos(psi)
+    return meridian_stretch(theta, p) * functions(psi).cos(psi)
 
 
 def volume_rate(theta: Number, psi: Number, p: Parameters) -> Number:

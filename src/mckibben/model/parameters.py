@@ -9,11 +9,21 @@ from typing import Any, NamedTuple
 import attrs
 import jax
 import jax.numpy as jnp
+import numpy as np
 
 from .. import spec
+from ..units import is_traced
+
+jax.config.update("jax_enable_x64", True)  # here, because everything that computes with JAX imports this module
 
 Number = Any
 """A float, a NumPy or JAX scalar, or a tracer."""
+
+
+def functions(*values: Number) -> Any:
+    """NumPy for plain numbers and arrays, where nothing is to be compiled; `jax.numpy` where JAX is in a value."""
+    return jnp if any(is_traced(value) for value in values) else np
+
 
 Law = Callable[[Number, Number, Number, Any], Number]
 """Hyperelastic law: energy density [Pa] from the three principal stretches and the law's constants."""
@@ -42,10 +52,10 @@ def parameters(muscle: "spec.Muscle") -> Parameters:
     numbers = Parameters(
         braid.radius, braid.length, braid.angle, braid.fibres, B1, B2, B3,
         1.0 if fibre.natural == "helical" else 0.0,
-        jnp.pi * thickness * (thickness + 2.0 * braid.radius),
+        np.pi * thickness * (thickness + 2.0 * braid.radius),
         () if chamber is None else constants(chamber.law),
     )  # fmt: skip
-    return jax.tree.map(lambda x: jnp.asarray(x, float), numbers)
+    return jax.tree.map(lambda x: functions(x).asarray(x, float), numbers)
 
 
 def constants(law: Any) -> Any:
