@@ -15,7 +15,6 @@ from typing import Any, NamedTuple
 
 import attrs
 import jax
-import jax.numpy as jnp
 import numpy as np
 
 from . import kept
@@ -24,6 +23,22 @@ OPTIONS: dict[str, Any] = {"xla_cpu_use_fusion_emitters": False}
 """For repeated use: with the former emitters of loops XLA compiles in two thirds of the time, to faster code."""
 QUICK: dict[str, Any] = OPTIONS | {"xla_backend_optimization_level": 0}
 """For a single use: half the time to compile again, three times the time to run."""
+
+
+def _known(options: dict[str, Any]) -> dict[str, Any] | None:
+    """Options that this compiler takes: None on other devices than the CPU, and where it no longer has them."""
+    return options if _takes(tuple(options.items())) else None
+
+
+@functools.cache
+def _takes(options: tuple[tuple[str, Any], ...]) -> bool:
+    if jax.default_backend() != "cpu":
+        return False
+    try:
+        jax.jit(lambda x: x).lower(0.0).compile(compiler_options=dict(options))
+    except jax.errors.JaxRuntimeError:
+        return False
+    return True
 
 
 @attrs.frozen
@@ -54,6 +69,30 @@ def keeping(folder: Path) -> Iterator[None]:
             pool.shutdown(wait=False, cancel_futures=True)
 
 
+class _Apart:
+    """While this is entered, by any number of threads, nothing goes into JAX's own cache."""
+
+    def __init__(self) -> None:
+        self._lock, self._inside, self._before = threading.Lock(), 0, 0.0
+
+    def __enter__(self) -> None:
+        with self._lock:
+            if not self._inside:
+                self._before = jax.config.values[_LEAST_TIME]
+                jax.config.update(_LEAST_TIME, float("inf"))
+            self._inside += 1
+
+    def __exit__(self, *error: object) -> None:
+        with self._lock:
+            self._inside -= 1
+            if not self._inside:
+                jax.config.update(_LEAST_TIME, self._before)
+
+
+_LEAST_TIME = "jax_persistent_cache_min_compile_time_secs"
+_apart = _Apart()
+
+
 class _Kind(NamedTuple):
     """One executable of a kernel."""
 
@@ -64,7 +103,7 @@ class _Kind(NamedTuple):
 
 
 def _shapes(leaves: list[Any]) -> tuple[Any, ...]:
-    return tuple((np.shape(leaf), jnp.result_type(leaf)) for leaf in leaves)
+    return tuple((np.shape(leaf), leaf.dtype if hasattr(leaf, "dtype") else np.dtype(type(leaf))) for leaf in leaves)
 
 
 class Kernel:
@@ -75,10 +114,19 @@ class Kernel:
         self._name = f"{function.__module__}.{function.__qualname__}"
         self._function = function
         self._inside: Any = jax.jit(function, static_argnums=0)  # within other compiled functions
-        self._jit: Any = jax.jit(function, static_argnums=0, compiler_options=OPTIONS)
         self._kept: dict[Any, Future[Any]] = {}
         self._lock = threading.Lock()
-        self.lower = self._jit.lower
+
+    @functools.cached_property
+    def _jit(self) -> Any:
+        return jax.jit(self._function, static_argnums=0, compiler_options=_known(OPTIONS))
+
+    def lower(self, *args: Any) -> Any:
+        """As of `jax.jit`."""
+        return self._jit.lower(*args)
+
+    def __reduce__(self) -> str:
+        return self._function.__qualname__  # a kernel is known by its module and name
 
     def __call__(self, *args: Any) -> Any:
         static, arrays = args[0], args[1:]
@@ -140,9 +188,9 @@ class Kernel:
         self._kept[kind] = nothing
 
     def _compile(self, kind: _Kind) -> Any:
-        """Compiled for one use, under a name of its own.
+        """Compiled for one use, apart from JAX's own cache: what that reads back cannot be written again.
 
-        JAX's own cache must not know the name: what it reads from there is a copy that cannot be written again.
+        So the name is new each time, and nothing is put there.
         """
 
         def once(*args: Any) -> Any:
@@ -150,7 +198,9 @@ class Kernel:
 
         once.__name__ = f"{self._function.__name__}_{secrets.token_hex(4)}"
         arrays = jax.tree.unflatten(kind.tree, [jax.ShapeDtypeStruct(*shape) for shape in kind.shapes])
-        return jax.jit(once, static_argnums=0).lower(kind.static, *arrays).compile(compiler_options=QUICK)
+        lowered = jax.jit(once, static_argnums=0).lower(kind.static, *arrays)
+        with _apart:
+            return lowered.compile(compiler_options=_known(QUICK))
 
     def _cache_size(self) -> int:
         return self._jit._cache_size() + self._inside._cache_size() + len(self._kept)

@@ -1,4 +1,4 @@
-"""Compiled functions kept between calls of the command line, in JAX's persistent compilation cache.
+"""Compiled functions kept between calls of the command line: kernels as executables, the rest in JAX's own cache.
 
 JAX writes its entries straight into the folder: one that was cut short (the process was killed, the disk full) cannot
 be unpacked later. JAX then warns and compiles anew, but never replaces it. `kept` hears that and clears the folder.
@@ -18,6 +18,8 @@ from mckibben import kept as kept_files
 
 __all__ = ["folder", "kept", "size", "use"]
 
+KERNELS = "kernels"
+"""Folder beside JAX's own entries."""
 LIMIT = 256 * 2**20
 """Bytes above which the folder is cleared."""
 _TROUBLE = r"Error (reading|writing) persistent compilation cache entry"
@@ -69,7 +71,7 @@ def kept() -> Iterator[None]:
         else:
             from mckibben.kernel import keeping
 
-            with keeping(place / "kernels"):
+            with keeping(place / KERNELS):
                 yield
     trouble = [warning for warning in caught if re.match(_TROUBLE, str(warning.message))]
     damaged = any(str(warning.message).startswith("Error reading") for warning in trouble)
@@ -84,7 +86,7 @@ def size(place: Path) -> tuple[int, int]:
     """Number of kept functions and their bytes."""
     count = total = 0
     with suppress(OSError):
-        for entry in place.glob("*-cache"):
+        for entry in _entries(place):
             with suppress(OSError):  # cleared by another process in the meantime
                 count, total = count + 1, total + entry.stat().st_size
     return count, total
@@ -92,6 +94,11 @@ def size(place: Path) -> tuple[int, int]:
 
 def _clear(place: Path) -> None:
     with suppress(OSError):
-        for entry in place.glob("*-cache"):
+        for entry in _entries(place):
             with suppress(OSError):
                 entry.unlink()
+
+
+def _entries(place: Path) -> Iterator[Path]:
+    yield from place.glob("*-cache")
+    yield from (place / KERNELS).glob(f"*{kept_files.SUFFIX}")
