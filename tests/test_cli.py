@@ -307,6 +307,37 @@ assert not heavy, heavy
     assert done.returncode == 0, done.stderr
 
 
+LIGHT = """
+import sys
+from typer.testing import CliRunner
+import mckibben as mk
+from mckibben.app.cli import app
+heavy = set(sys.argv[1].split(","))
+done = CliRunner().invoke(app, sys.argv[2:])
+assert done.exit_code == 0, done.output
+assert not heavy & sys.modules.keys(), heavy & sys.modules.keys()
+"""
+
+
+@pytest.mark.parametrize(
+    ("words", "heavy"),
+    [
+        (("presets",), "jax,scipy,pint,xarray,pandas,matplotlib"),
+        (("presets", "paper", "--toml"), "jax,scipy,pint,xarray,pandas,matplotlib"),
+        (("check", "case.toml"), "jax,scipy,pint,xarray,pandas,matplotlib"),
+        (("info", "made.nc"), "jax,matplotlib"),
+        (("plot", "made.nc"), "jax"),
+    ],
+)
+def test_what_solves_nothing_loads_no_solver(tmp_path: Path, words: tuple[str, ...], heavy: str) -> None:
+    paper = mk.presets.paper()
+    (tmp_path / "case.toml").write_text(invoke("presets", "paper", "--toml").stdout, encoding="utf-8")
+    mk.save(made(paper, mk.Isometric(length="115 mm", pressure="0 to 1 bar", points=5), 5), tmp_path / "made.nc")
+    call = [sys.executable, "-c", LIGHT, heavy, *words]
+    done = subprocess.run(call, capture_output=True, text=True, cwd=tmp_path)
+    assert done.returncode == 0, done.stderr
+
+
 def test_installation() -> None:
     shown = invoke("info")
     assert shown.exit_code == 0

@@ -11,8 +11,10 @@ from muscles import between
 from numpy.polynomial.legendre import leggauss
 from scipy.integrate import quad
 from scipy.optimize import minimize
+from scipy.special import elliprd, elliprf
 
 from mckibben import spec
+from mckibben.model import elliptic
 from mckibben.model.extension import full_extension
 
 angles = between(math.radians(5.0), math.radians(85.0))
@@ -124,3 +126,12 @@ def test_free_ends_reach_the_length_of_a_fibre() -> None:
 def test_unknown_ends_are_refused() -> None:
     with pytest.raises(ValueError, match="welded"):
         full_extension(12.5e-3, 85e-3, 0.6, "welded")
+
+
+def test_elliptic_integrals_are_those_of_scipy() -> None:
+    rng = np.random.default_rng(4)
+    for x, y, z in 10.0 ** rng.uniform(-20.0, 3.0, (300, 3)):
+        assert elliptic.elliprf(x, y, z) == pytest.approx(elliprf(x, y, z), rel=3e-15)
+        assert elliptic.elliprd(x, y, z) == pytest.approx(elliprd(x, y, z), rel=3e-15)
+    assert elliptic.elliprf(0.0, 1.0, 1.0) == pytest.approx(math.pi / 2, rel=1e-15)
+    assert elliptic.elliprd(4.0, 4.0, 4.0) == pytest.approx(1 / 8, rel=1e-15)

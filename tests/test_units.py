@@ -9,6 +9,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from mckibben import units
 from mckibben.units import UnitError, from_si, show, split, to_si
 
 PROPERTY = settings(max_examples=50, deadline=None, derandomize=True, database=None)
@@ -152,3 +153,9 @@ def test_garbage_is_a_unit_error(text, unit):
         said = str(error)
     assert math.isfinite(value)
     assert "\n" not in said
+
+
+@pytest.mark.parametrize("unit", units._USUAL)
+def test_the_usual_units_are_those_of_pint(unit):
+    wanted, factor = units._USUAL[unit]
+    assert units._looked_up(unit, unit, wanted, "") == factor

@@ -2,15 +2,15 @@
 
 import attrs
 import numpy as np
-from scipy.optimize import brentq
 
-from .judge import Judgement, Shape, Verdict, clearance, judge, shape_of
+from .judge import Judgement, clearance, judge, shape_of
 from .model.extension import full_extension
 from .solver.direct import embedded, find
 from .solver.equilibrium import Equilibrium, Held
 from .solver.problem import Problem
-from .solver.stability import Modes, count_modes, stiffness
+from .solver.stability import count_modes, stiffness
 from .survey import meridian
+from .verdict import Modes, Shape, Verdict
 
 STEPS, JUMP = 16, 0.6
 """Steps from one end of a path to the other at first, and the change of psi [rad] that a step may make."""
@@ -219,6 +219,8 @@ def _root(walk: _Walk, here: Look, done: float, bad: Look, beyond: float, tolera
         if fraction not in seen:
             seen[fraction] = walk.trial(fraction, here.state)
         return walk.margin(seen[fraction])
+
+    from scipy.optimize import brentq  # here, because few searches need what takes a third of a second to import
 
     brentq(margin, done, beyond, xtol=tolerance, rtol=1e-14)
     good = max(fraction for fraction, one in seen.items() if walk.good(one))

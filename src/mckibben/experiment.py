@@ -7,6 +7,7 @@ from typing import Any
 import attrs
 import numpy as np
 
+from . import survey as surveying
 from .caution import thick_wall
 from .discretise.bspline import Spline
 from .discretise.line import Line
@@ -15,6 +16,7 @@ from .model.extension import full_extension
 from .model.parameters import Law, Parameters, parameters
 from .report import Part, report
 from .result import Result
+from .solver import path
 from .solver.arclength import branch
 from .solver.direct import find
 from .solver.equilibrium import NAMES, Equilibrium, Held
@@ -52,8 +54,12 @@ class Bench:
 
     def problem(self, size: int, b: float, discretisation: str = "spectral", modes: Any = "odd") -> Problem:
         """The muscle on a discretisation."""
+        return Problem.of(self.space(size, discretisation, modes), self.p, b)
+
+    def space(self, size: int, discretisation: str = "spectral", modes: Any = "odd") -> Space:
+        """The static part of it."""
         basis = Spline(size, self.ends) if discretisation == "paper" else Line(size, self.ends, modes)
-        return Problem.of(Space(basis, self.law), self.p, b)
+        return Space(basis, self.law)
 
     def placement(self, held: Held) -> float:
         """Crowding of points for one state."""
@@ -116,13 +122,22 @@ def solved(
     watch: Watch = lambda k, n: None,
 ) -> list[Part]:
     """The states of every step, on as many unknowns as the tolerance needs."""
+    sizes = sizes_for(discretisation, tolerance)
+    _prepare(bench.space(sizes[0], discretisation), bench.p, steps)
     b = _crowding(bench, steps)
-    for size in sizes_for(discretisation, tolerance):
+    for size in sizes:
         parts = _follow(bench, bench.problem(size, b, discretisation), steps, tolerance, watch)
         errors = [float(part.survey.error.max()) for part in parts if part.survey is not None]
         if max(errors, default=0.0) <= tolerance or any(part.why == INTERRUPTED for part in parts):
             break
     return parts
+
+
+def _prepare(space: Space, p: Parameters, steps: tuple[Step, ...]) -> None:
+    """Have what the test will call compiled in the background, where compiled functions are kept."""
+    for count in dict.fromkeys(step.points for step in steps):
+        path.prepare(space, p, 0.0, count)
+        surveying.prepare(space, p, 0.0, count)
 
 
 def _crowding(bench: Bench, steps: tuple[Step, ...]) -> float:
@@ -186,12 +201,12 @@ def _walk(
         rest = Held.of(length=float(problem.p.H0), pressure=0.0)
         start = find(problem, rest) if here is None else here
         return sealed(problem, held[0], wanted[:, 0].tolist(), start, str(step.gas), tell)
-    path = [Held.of(**dict(zip(held, row, strict=True))) for row in wanted.tolist()]
+    states = [Held.of(**dict(zip(held, row, strict=True))) for row in wanted.tolist()]
     if step.along == Along.BRANCH:
-        first = find(problem, path[0], here)
+        first = find(problem, states[0], here)
         if first.converged:
-            return branch(problem, first, path, tell)
-    return trace(problem, path, here, min(1e-4, tolerance), tell)
+            return branch(problem, first, states, tell)
+    return trace(problem, states, here, min(1e-4, tolerance), tell)
 
 
 def _later(watch: Watch, before: int, total: int) -> Watch:

@@ -1,32 +1,9 @@
 """The verdict on a state, in words that a lab user understands."""
 
-from enum import StrEnum
-
 import attrs
 import numpy as np
 
-from .solver.stability import Modes
-
-
-class Verdict(StrEnum):
-    """What a state is worth; compares equal to its word."""
-
-    STABLE = "stable"
-    UNSTABLE = "unstable"
-    INADMISSIBLE = "inadmissible"
-    NO_EQUILIBRIUM = "no equilibrium"
-    NOT_CONVERGED = "not converged"
-
-
-class Shape(StrEnum):
-    """The meridian: ordinary, overhanging its fitting (admissible), or one that the model cannot mean."""
-
-    ORDINARY = "ordinary"
-    OVERHANG = "overhang"
-    BEHIND_END_PLANE = "behind the end plane"
-    SELF_CONTACT = "self-contact"
-    ROLLED_UP = "rolled up"
-
+from .verdict import Modes, Shape, Verdict
 
 ADMISSIBLE = (Shape.ORDINARY, Shape.OVERHANG)
 

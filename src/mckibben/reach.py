@@ -8,11 +8,11 @@ import xarray as xr
 
 from .branch import BranchEnd, branch_end, look
 from .experiment import Bench
-from .judge import Shape
 from .solver.direct import find
 from .solver.equilibrium import Held
 from .spec import Muscle, Path, SpecError, Step
 from .spec.text import to_toml
+from .verdict import Shape
 
 SIZE = 48
 """Half-length unknowns: limits of the reference muscle to 1e-8."""

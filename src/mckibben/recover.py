@@ -9,14 +9,13 @@ the costate of theta:
                      - [dw_f/dtheta - (dw_f/dtheta')'] sin(theta0) cos(theta)
 """
 
-from functools import partial
-
 import attrs
 import jax
 import jax.numpy as jnp
 import numpy as np
 from jaxtyping import Array, Float
 
+from .kernel import kernel
 from .model.angle import cos, sin, slope
 from .model.chamber import chamber_density
 from .model.energy import stored
@@ -30,7 +29,7 @@ from .model.kinematics import (
     volume_rate,
 )
 from .model.parameters import Law, Number, Parameters
-from .solver.problem import Problem
+from .solver.problem import Problem, Space
 
 NODES = 129
 """Output points along the length, crowded at the fittings like the mesh, where the fields vary most."""
@@ -91,7 +90,7 @@ def _fields(
     }  # fmt: skip
 
 
-@partial(jax.jit, static_argnums=0)
+@kernel
 def fields(
     law: Law,
     p: Parameters,
@@ -107,7 +106,7 @@ def fields(
     return jax.vmap(along, (0, 0, 0, 0, 0, 0, None, None))(theta, psi, kappa, costate, F, P, p, law)
 
 
-@partial(jax.jit, static_argnums=0)
+@kernel
 def angle_force(
     law: Law,
     p: Parameters,
@@ -136,7 +135,7 @@ class Recovered:
 def recover(problem: Problem, u: np.ndarray, loads: np.ndarray) -> Recovered:
     """Fields and energies of states u (n, m) under dimensionless loads (n, 4)."""
     n, basis, p, b, law = len(u), problem.space.basis, problem.p, problem.b, problem.space.law
-    u, loads = _pad(u), _pad(loads)
+    u, loads = pad(u), pad(loads)
     F, P = loads[:, 1] * problem.load_unit[1], loads[:, 2] * problem.load_unit[2]
     inner, outer = basis.profile(p, b, u), basis.profile(p, b, u, NODES)
     theta, psi, kappa = (np.concatenate(pair, axis=1) for pair in zip(inner, outer, strict=True))
@@ -165,7 +164,15 @@ def recover(problem: Problem, u: np.ndarray, loads: np.ndarray) -> Recovered:
     return Recovered(basis.nodes(p, b, NODES), at_nodes, energies, variation[:n], tail)
 
 
-def _pad(rows: np.ndarray) -> np.ndarray:
+def prepare(space: Space, p: Parameters, b: float, count: int) -> None:
+    """Have what `recover` calls for `count` states compiled in the background (see `kernel`)."""
+    n, q = len(pad(np.empty(count))), space.basis.points
+    inner, every, load = np.empty((n, q)), np.empty((n, q + NODES)), np.empty(n)
+    angle_force.prepare(space.law, p, inner, inner, inner, load, load)
+    fields.prepare(space.law, p, every, every, every, every, load, load)
+
+
+def pad(rows: np.ndarray) -> np.ndarray:
     """Rows repeated up to 1 or a power of two from 32, so that few shapes are compiled."""
     size = 1 if len(rows) == 1 else max(32, 1 << int(len(rows) - 1).bit_length())
     return np.concatenate([rows, np.repeat(rows[-1:], size - len(rows), axis=0)])

@@ -6,15 +6,16 @@ from importlib.metadata import version
 
 import attrs
 import numpy as np
-from scipy.interpolate import CubicSpline
 
 from .caution import after
-from .judge import Judgement, Shape, Verdict
+from .judge import Judgement
 from .recover import NODES
-from .result import FIELDS, Result, about, dataset
+from .result import FIELDS, Result, Table, about
 from .solver.path import INTERRUPTED
 from .spec import Muscle, Test
 from .survey import Survey
+from .verdict import Shape, Verdict
+from .work import work
 
 ENERGIES = ("bending_1", "bending_2", "twist", "chamber")
 NUMBERS = (
@@ -55,7 +56,7 @@ def report(muscle: Muscle, test: Test, parts: list[Part], H0: float, cautions: l
     date = datetime.datetime.now(datetime.UTC).isoformat(timespec="seconds")
     known = [part.survey.recovered.v for part in parts if part.survey is not None]
     v = known[0] if known else np.linspace(0.0, H0, NODES)
-    return Result(muscle, test, dataset(steps, fields, v, about(muscle, test, versions(), date, notes, status))), notes
+    return Result(muscle, test, Table(steps, fields, v, about(muscle, test, versions(), date, notes, status))), notes
 
 
 @cache
@@ -102,21 +103,14 @@ def _rows(part: Part, name: str) -> np.ndarray:
 
 
 def _work(columns: list[dict[str, np.ndarray]], lost: np.ndarray) -> list[np.ndarray]:
-    """Work done on the muscle: integral of F dh + P dV, through cubic splines over the states of each step."""
+    """Work done on the muscle in each step of the test, up to the first state that is lost."""
     done, found, at = 0.0, [], 0
     for column in columns:
         n = len(column["force"])
         good = int(np.argmax(np.append(lost[at : at + n], True)))
-        work = np.full(n, np.nan)
-        work[:good] = done
-        if good > 1:
-            index = np.arange(good)
-            F, h, P, V = (CubicSpline(index, column[name][:good]) for name in ("force", "length", "pressure", "volume"))
-            x, w = np.polynomial.legendre.leggauss(4)
-            at_points = index[:-1, None] + 0.5 * (x + 1.0)
-            power = F(at_points) * h(at_points, 1) + P(at_points) * V(at_points, 1)
-            work[1:good] += np.cumsum(power @ w) * 0.5
-            done = float(work[good - 1])
-        found.append(work)
+        total = np.full(n, np.nan)
+        total[:good] = done + work(*(column[name][:good] for name in ("force", "length", "pressure", "volume")))
+        done = float(total[good - 1]) if good > 1 else done
+        found.append(total)
         at += n
     return found

@@ -3,16 +3,20 @@
 Every variable is declared once in `VARIABLES`, with its unit and meaning; files, plots and the reference page read it.
 """
 
-from typing import Any
+from __future__ import annotations
+
+from functools import cached_property
+from typing import TYPE_CHECKING, Any
 
 import attrs
 import numpy as np
-import xarray as xr
 
-from .judge import Verdict
-from .solver.stability import Modes
 from .spec import Muscle, Test
 from .spec.text import to_toml
+from .verdict import Modes, Verdict
+
+if TYPE_CHECKING:
+    import xarray as xr
 
 STEP: dict[str, tuple[str, str]] = {
     "length": ("m", "distance between the fittings"),
@@ -67,8 +71,24 @@ FIELDS: dict[str, tuple[str, str]] = {
 VARIABLES = STEP | FIELDS
 
 
+@attrs.frozen(eq=False)
+class Table:
+    """What a Dataset is made of, as plain arrays: made and read without xarray, which takes half a second to import."""
+
+    steps: dict[str, np.ndarray]  #: per state (n)
+    fields: dict[str, np.ndarray]  #: per state and point (n, q)
+    v: np.ndarray  #: axial material coordinate (q) [m]
+    attrs: dict[str, Any]
+
+    def dataset(self) -> xr.Dataset:
+        """The Dataset; its arrays are read-only."""
+        return dataset(self.steps, self.fields, self.v, self.attrs)
+
+
 def dataset(steps: dict[str, Any], fields: dict[str, np.ndarray], v: np.ndarray, about: dict[str, Any]) -> xr.Dataset:
     """The Dataset of a result; every declared variable must be given."""
+    import xarray as xr  # here, because not everybody who wants numbers wants to wait for it
+
     variables: dict[str, Any] = {}
     for names, values, dims in ((STEP, steps, ("step",)), (FIELDS, fields, ("step", "v"))):
         for name, (unit, meaning) in names.items():
@@ -89,7 +109,17 @@ class Result:
 
     muscle: Muscle
     test: Test
-    data: xr.Dataset
+    _given: Table | xr.Dataset = attrs.field(alias="data")
+
+    @cached_property
+    def data(self) -> xr.Dataset:
+        """Everything known of the states."""
+        return self._given.dataset() if isinstance(self._given, Table) else self._given
+
+    @property
+    def attributes(self) -> dict[str, Any]:
+        """What the Dataset carries beside its variables: title, muscle and test as TOML, versions, date, warnings."""
+        return self._given.attrs
 
     def __eq__(self, other: object) -> bool:
         if not isinstance(other, Result):
@@ -100,55 +130,60 @@ class Result:
         return hash((self.muscle, self.test))
 
     def __len__(self) -> int:
-        return int(self.data.sizes["step"])
+        return len(self.column("length"))
 
-    def _column(self, name: str) -> np.ndarray:
-        return np.asarray(self.data[name].values)
+    def column(self, name: str) -> np.ndarray:
+        """A variable as a plain read-only array: (states) or (states, points along the muscle)."""
+        if isinstance(self._given, Table):
+            values = np.asarray((self._given.steps if name in STEP else self._given.fields)[name])
+            values.flags.writeable = False
+            return values
+        return np.asarray(self._given[name].values)
 
     @property
     def force(self) -> np.ndarray:
         """Axial force [N] per state, positive in tension; NaN where there is none."""
-        return self._column("force")
+        return self.column("force")
 
     @property
     def length(self) -> np.ndarray:
         """Distance between the fittings [m] per state."""
-        return self._column("length")
+        return self.column("length")
 
     @property
     def contraction(self) -> np.ndarray:
         """Contraction 1 - h/H0 per state."""
-        return self._column("contraction")
+        return self.column("contraction")
 
     @property
     def pressure(self) -> np.ndarray:
         """Gauge pressure [Pa] per state."""
-        return self._column("pressure")
+        return self.column("pressure")
 
     @property
     def volume(self) -> np.ndarray:
         """Volume inside the braid [m^3] per state."""
-        return self._column("volume")
+        return self.column("volume")
 
     @property
     def verdict(self) -> tuple[str, ...]:
         """Verdict per state."""
-        return tuple(str(word) for word in self._column("verdict"))
+        return tuple(str(word) for word in self.column("verdict"))
 
     @property
     def cautions(self) -> tuple[str, ...]:
         """What a real muscle may do that the model does not know; each names the state from which it may."""
-        return tuple(filter(None, self.data.attrs["warnings"].split("\n")))
+        return tuple(filter(None, self.attributes["warnings"].split("\n")))
 
     @property
     def reached(self) -> int:
         """Number of states with an equilibrium."""
-        return int(self._column("converged").sum())
+        return int(self.column("converged").sum())
 
     @property
     def status(self) -> str:
         """complete, incomplete (some states have no admissible equilibrium or were not reached) or interrupted."""
-        return str(self.data.attrs["status"])
+        return str(self.attributes["status"])
 
     def __repr__(self) -> str:
         words = sorted(set(self.verdict))
@@ -163,8 +198,8 @@ class State:
     verdict: Verdict  #: compares equal to its word
     reason: str  #: a sentence that a lab user understands
     modes: Modes | None  #: counts of negative modes
-    last_good: "State | None" = None  #: the last stable state on the way, where none was found at the target
-    asymmetric: "State | None" = None  #: the stable state to which an antisymmetrically unstable one goes
+    last_good: State | None = None  #: the last stable state on the way, where none was found at the target
+    asymmetric: State | None = None  #: the stable state to which an antisymmetrically unstable one goes
 
     @property
     def muscle(self) -> Muscle:
@@ -177,7 +212,7 @@ class State:
         return self.result.data.isel(step=0)
 
     def _number(self, name: str) -> float:
-        return float(self.data[name].values)
+        return float(self.result.column(name)[0])
 
     @property
     def force(self) -> float:
@@ -207,7 +242,7 @@ class State:
     @property
     def cautions(self) -> tuple[str, ...]:
         """What a real muscle may do there that the model does not know."""
-        return tuple(filter(None, self.result.data.attrs["warnings"].split("\n")))
+        return tuple(filter(None, self.result.attributes["warnings"].split("\n")))
 
     @property
     def error_estimate(self) -> float:

@@ -8,7 +8,6 @@ from .branch import Look, look
 from .caution import before
 from .experiment import Bench, sizes_for
 from .fallback import Else, Way, look_elsewhere, way_there
-from .judge import Verdict
 from .reach import holding
 from .report import Part, report
 from .result import State
@@ -19,6 +18,7 @@ from .spec import Muscle, SpecError, Step
 from .stretched import near_extension, stretched
 from .survey import survey
 from .units import show
+from .verdict import Verdict
 
 COARSE = 24
 """Unknowns with which the pressure that would hold a length is looked for: it is told to three digits."""

@@ -3,12 +3,15 @@
 import attrs
 import numpy as np
 
+from . import recover as recovering
 from .judge import Judgement, judge, shape_of
 from .model.kinematics import height_rate, radius
-from .recover import Recovered, recover
-from .solver.problem import LENGTH, VOLUME, Problem
-from .solver.stability import Modes, count_modes, stiffness
+from .model.parameters import Parameters
+from .recover import Recovered, pad, recover
+from .solver.problem import LENGTH, VOLUME, Problem, Space
+from .solver.stability import count_modes, stiffness
 from .solver.trust import imbalance
+from .verdict import Modes
 
 ROUNDING = 1e-11
 """Relative error that rounding leaves in a force or length at best."""
@@ -49,12 +52,17 @@ class Survey:
         return np.asarray(self.loads[:, VOLUME] * self.problem.load_unit[VOLUME])
 
 
+def prepare(space: Space, p: Parameters, b: float, count: int) -> None:
+    """Have what a survey of `count` states calls compiled in the background (see `kernel`)."""
+    u, loads = pad(np.empty((count, space.basis.unknowns))), pad(np.empty((count, 4)))
+    stiffness.prepare(space, p, b, u, loads)
+    recovering.prepare(space, p, b, count)
+
+
 def survey(problem: Problem, u: np.ndarray, loads: np.ndarray, held: tuple[str, ...]) -> Survey:
     """Look at states u (n, m) under loads (n, 4), found with `held` controlled."""
     n = len(u)
-    size = 1 if n == 1 else max(32, 1 << int(n - 1).bit_length())
-    filled = [np.concatenate([rows, np.repeat(rows[-1:], size - n, axis=0)]) for rows in (u, loads)]
-    K = stiffness(problem.space, problem.p, problem.b, *filled)
+    K = stiffness(problem.space, problem.p, problem.b, pad(u), pad(loads))
     K = type(K)(*(np.asarray(part)[:n] for part in K))
     modes = count_modes(problem.space, K, pressure_held="volume" not in held)
     recovered = recover(problem, u, loads)

@@ -1,7 +1,8 @@
 """Text or pint quantity <-> SI float, and how numbers are shown. Nobody else knows units.
 
 Inside the package every number is SI (m, N, Pa, rad, m^3, N m^2). A bare number is taken as SI; text needs its
-unit ("12.5 mm"), except a plain zero. Units are looked up in one cached pint registry, imported on first use.
+unit ("12.5 mm"), except a plain zero. Units are looked up in one cached pint registry, imported on first use; the
+usual units need none of it.
 """
 
 from __future__ import annotations
@@ -25,6 +26,15 @@ Number: TypeAlias = Any
 
 DISPLAY = {"m": "mm", "Pa": "bar", "rad": "deg", "m^3": "mL", "N m^2": "N mm^2", "J": "mJ"}
 """The unit each SI unit is shown in, where it is not itself."""
+
+_USUAL = {
+    "m": ("m", 1.0), "mm": ("m", 1e-3), "cm": ("m", 1e-2), "um": ("m", 1e-6),
+    "Pa": ("Pa", 1.0), "kPa": ("Pa", 1e3), "MPa": ("Pa", 1e6), "GPa": ("Pa", 1e9), "bar": ("Pa", 1e5),
+    "rad": ("rad", 1.0), "deg": ("rad", math.pi / 180.0), "N": ("N", 1.0), "mN": ("N", 1e-3), "kN": ("N", 1e3),
+    "m^3": ("m^3", 1.0), "mL": ("m^3", 1e-6), "N m^2": ("N m^2", 1.0), "N mm^2": ("N m^2", 1e-6),
+    "J": ("J", 1.0), "mJ": ("J", 1e-3),
+}  # fmt: skip
+"""The usual units with their SI unit and factor, which need no pint; a test compares them with pint's."""
 
 _NUMBER = re.compile(r"([+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?)\s*(.*)", re.DOTALL)
 # Only names, one-digit powers and separators reach pint, whose own reader would evaluate any arithmetic ("9**9**9").
@@ -62,6 +72,16 @@ def _factor(unit: str, wanted: str) -> float:
         if clean in ("", "dimensionless"):
             return 1.0
         raise UnitError("must be a plain number without a unit", f'leave out "{unit}"')
+    if clean in _USUAL and wanted in _USUAL:
+        kind, factor = _USUAL[clean]
+        if kind == wanted:
+            return factor
+        raise UnitError(f'has the wrong kind of unit, "{_short(unit)}"', example)
+    return _looked_up(clean, unit, wanted, example)
+
+
+def _looked_up(clean: str, unit: str, wanted: str, example: str) -> float:
+    """The factor as pint knows it."""
     if not _UNIT.fullmatch(clean):
         raise UnitError(f'has an unreadable unit "{_short(unit)}"', example)
     registry = _registry()
@@ -156,6 +176,8 @@ def from_si(value: Any, unit: str) -> Any:
 @lru_cache(maxsize=128)
 def _si_of(unit: str) -> str:
     """The package's SI unit for the kind of `unit`."""
+    if unit in _USUAL:
+        return _USUAL[unit][0]
     for candidate in ("m", "N", "Pa", "rad", "m^3", "N m^2", "J", "J/m", "1/m", "m^2", "N/m"):
         try:
             _factor(unit, candidate)

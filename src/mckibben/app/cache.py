@@ -1,4 +1,4 @@
-"""Compiled functions kept between calls of the command line, in JAX's persistent compilation cache.
+"""Compiled functions kept between calls of the command line: kernels as executables, the rest in JAX's own cache.
 
 JAX writes its entries straight into the folder: one that was cut short (the process was killed, the disk full) cannot
 be unpacked later. JAX then warns and compiles anew, but never replaces it. `kept` hears that and clears the folder.
@@ -7,17 +7,19 @@ be unpacked later. JAX then warns and compiles anew, but never replaces it. `kep
 from __future__ import annotations
 
 import os
-import platform
 import re
 import warnings
-import zlib
 from collections.abc import Iterator
 from contextlib import contextmanager, suppress
 from importlib.metadata import version
 from pathlib import Path
 
+from mckibben import kept as kept_files
+
 __all__ = ["folder", "kept", "size", "use"]
 
+KERNELS = "kernels"
+"""Folder beside JAX's own entries."""
 LIMIT = 256 * 2**20
 """Bytes above which the folder is cleared."""
 _TROUBLE = r"Error (reading|writing) persistent compilation cache entry"
@@ -30,16 +32,7 @@ def folder() -> Path:
         return Path(given)
     from platformdirs import user_cache_dir
 
-    return Path(user_cache_dir("mckibben", appauthor=False)) / f"jax-{version('jax')}-{_processor()}"
-
-
-def _processor() -> str:
-    """The processor with its extensions: code compiled for another one may not run, and home folders are shared."""
-    features = platform.processor().encode()
-    with suppress(OSError):
-        lines = Path("/proc/cpuinfo").read_bytes().splitlines()
-        features = next((line for line in lines if line.lower().startswith((b"flags", b"features"))), features)
-    return f"{platform.machine() or 'unknown'}-{zlib.crc32(features):08x}"
+    return Path(user_cache_dir("mckibben", appauthor=False)) / f"jax-{version('jax')}-{kept_files.processor()}"
 
 
 def use() -> Path | None:
@@ -73,7 +66,13 @@ def kept() -> Iterator[None]:
     place = use()
     with warnings.catch_warnings(record=True) as caught:
         warnings.filterwarnings("always", message=_TROUBLE)
-        yield
+        if place is None:
+            yield
+        else:
+            from mckibben.kernel import keeping
+
+            with keeping(place / KERNELS):
+                yield
     trouble = [warning for warning in caught if re.match(_TROUBLE, str(warning.message))]
     damaged = any(str(warning.message).startswith("Error reading") for warning in trouble)
     if damaged and place is not None and "JAX_COMPILATION_CACHE_DIR" not in os.environ:
@@ -87,7 +86,7 @@ def size(place: Path) -> tuple[int, int]:
     """Number of kept functions and their bytes."""
     count = total = 0
     with suppress(OSError):
-        for entry in place.glob("*-cache"):
+        for entry in _entries(place):
             with suppress(OSError):  # cleared by another process in the meantime
                 count, total = count + 1, total + entry.stat().st_size
     return count, total
@@ -95,6 +94,11 @@ def size(place: Path) -> tuple[int, int]:
 
 def _clear(place: Path) -> None:
     with suppress(OSError):
-        for entry in place.glob("*-cache"):
+        for entry in _entries(place):
             with suppress(OSError):
                 entry.unlink()
+
+
+def _entries(place: Path) -> Iterator[Path]:
+    yield from place.glob("*-cache")
+    yield from (place / KERNELS).glob(f"*{kept_files.SUFFIX}")

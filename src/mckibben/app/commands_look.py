@@ -129,7 +129,7 @@ def _content(file: Path) -> list[tuple[str, str]]:
     from mckibben.units import from_si
 
     result = store.load_result(file)
-    about = result.data.attrs
+    about = result.attributes
     verdicts = Counter(result.verdict)
     rows = [
         ("file", str(file)),
@@ -141,7 +141,7 @@ def _content(file: Path) -> list[tuple[str, str]]:
     rows += [("warning", warning) for warning in about["warnings"].splitlines() if warning]
     rows += [(f"test {name}", value) for name, value, _ in fields.test_rows(result.test)]
     for name, unit in (("length", "mm"), ("force", "N"), ("pressure", "bar"), ("volume", "mL")):
-        values = from_si(result.data[name].values, unit)
+        values = from_si(result.column(name), unit)
         values = values[values == values]  # without those that are not there
         rows.append((name, f"{values.min():.5g} to {values.max():.5g} {unit}" if len(values) else "none reached"))
     return rows

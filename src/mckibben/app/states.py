@@ -9,9 +9,9 @@ from typing import Any
 from mckibben.app.console import COMPLETE, INCOMPLETE, INTERRUPTED, say, table
 from mckibben.app.fields import muscle_rows
 from mckibben.files.table import rows
-from mckibben.judge import Verdict
 from mckibben.result import STEP, Result
 from mckibben.units import from_si
+from mckibben.verdict import Verdict
 
 __all__ = ["as_json", "exit_code", "show"]
 
@@ -40,7 +40,7 @@ def show(result: Result, tolerance: float) -> None:
         table(
             names,
             cells,
-            title=result.data.attrs["title"],
+            title=result.attributes["title"],
             right=range(len(names) - 1),
             whole=(len(names) - 1,),
             most=MOST_ROWS,
@@ -68,7 +68,7 @@ def _notes(result: Result, states: list[dict[str, Any]], tolerance: float) -> It
     for (verdict, reason), which in found.items():
         said = reason if reason.startswith(verdict) else f"{verdict}: {reason}"
         yield f"{_states(which)}: {said}"
-    for warning in filter(None, result.data.attrs["warnings"].splitlines()):
+    for warning in filter(None, result.attributes["warnings"].splitlines()):
         yield f"warning: {warning}"
     worst = max((row["error_estimate"] or 0.0 for row in states), default=0.0)
     if worst > tolerance:
@@ -90,7 +90,7 @@ def _states(which: list[int]) -> str:
 
 def as_json(result: Result, file: str | None) -> dict[str, Any]:
     """Everything per state in SI units, None where there is no number, and what it was computed for."""
-    about = result.data.attrs
+    about = result.attributes
     return {
         "complete": exit_code(result) == COMPLETE,
         "file": file,

@@ -12,6 +12,7 @@ from typing import NamedTuple
 
 import jax
 import jax.numpy as jnp
+import numpy as np
 from jaxtyping import Array, Float
 
 from ..model.parameters import Parameters
@@ -37,17 +38,16 @@ def totals(mesh: Mesh, form: Form, density: Pointwise, u: Float[Array, " m"], p:
 def derivatives(density: Pointwise, x: Float[Array, " d"]) -> tuple[Array, Array, Array]:
     """Value (k), Jacobian (k, d) and Hessians (k, d, d) of a pointwise density in one nested forward pass."""
     d = x.shape[0]
-    unit = jnp.eye(d)
-    rows, columns = jnp.triu_indices(d)
+    unit, (rows, columns) = np.eye(d), np.triu_indices(d)
+    pair = np.zeros((d, d), int)  # all of this is constant, so nothing of it is compiled
+    pair[rows, columns] = pair[columns, rows] = np.arange(len(rows))
 
     def along(first: Array, second: Array) -> tuple[Array, Array, Array]:
         (value, slope), (_, bend) = jax.jvp(lambda y: jax.jvp(density, (y,), (first,)), (x,), (second,))
         return value, slope, bend
 
-    value, slope, bend = jax.vmap(along)(unit[rows], unit[columns])
-    second = jnp.zeros((d, d, value.shape[1])).at[rows, columns].set(bend).at[columns, rows].set(bend)
-    diagonal = jnp.cumsum(jnp.arange(d, 0, -1)) - jnp.arange(d, 0, -1)
-    return value[0], slope[diagonal].T, jnp.moveaxis(second, -1, 0)
+    value, slope, bend = jax.vmap(along, out_axes=(None, 0, 0))(jnp.asarray(unit[rows]), jnp.asarray(unit[columns]))
+    return value, slope[pair.diagonal()].T, jnp.moveaxis(bend[pair], -1, 0)
 
 
 class Local(NamedTuple):

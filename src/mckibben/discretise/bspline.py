@@ -12,7 +12,6 @@ import jax.numpy as jnp
 import numpy as np
 from numpy.polynomial import legendre
 from numpy.typing import NDArray
-from scipy.interpolate import BSpline, CubicSpline
 
 from ..model.parameters import Number, Parameters
 from .mesh import Form, Mesh
@@ -53,6 +52,11 @@ class Spline:
         return {"clamped": 2, "pinned": 1, "free": 0}[self.ends]
 
     @property
+    def points(self) -> int:
+        """Quadrature points: three per element."""
+        return 3 * (self.size - 3)
+
+    @property
     def unknowns(self) -> int:
         """Free control points."""
         return self.size - 2 * self.held
@@ -83,6 +87,8 @@ class Spline:
 
     def integral(self, p: Parameters, b: float, values: Floats, count: int | None = None) -> Floats:
         """Integral from v = 0 of fields given at the mesh's points (steps, points), through a cubic spline."""
+        from scipy.interpolate import CubicSpline  # here, because few need what takes half a second to import
+
         antiderivative = CubicSpline(self.nodes(p, b), values, axis=1).antiderivative()
         return np.asarray(antiderivative(self.nodes(p, b, count)) - antiderivative(0.0))
 
@@ -98,6 +104,8 @@ def _operators(spline: Spline) -> tuple[Floats, Floats, Floats]:
 
 def _basis(spline: Spline, x: Floats) -> Floats:
     """Free splines and two derivatives at x in [0, 1]."""
+    from scipy.interpolate import BSpline
+
     elements = spline.size - 3
     knots = np.concatenate([np.zeros(3), np.linspace(0.0, 1.0, elements + 1), np.ones(3)])
     every = BSpline(knots, np.eye(spline.size), 3)

@@ -14,7 +14,7 @@ from numpy.polynomial import legendre
 from numpy.typing import NDArray
 
 from ..model.kinematics import angle_rate
-from ..model.parameters import Number, Parameters
+from ..model.parameters import Number, Parameters, functions
 from .mesh import Form, Mesh
 
 Modes = Literal["odd", "even", "all"]
@@ -186,9 +186,11 @@ def cumulative(xi: Floats, w: Floats, at: Floats) -> Floats:
 
 def coordinate(x: Any, p: Parameters, b: Number) -> Any:
     """Material coordinate v [m] of the mapped coordinate x."""
-    return 0.5 * p.H0 * (1.0 + jnp.tanh(b * x) / jnp.tanh(b))
+    f = functions(x, b)
+    return 0.5 * p.H0 * (1.0 + f.tanh(b * x) / f.tanh(b))
 
 
 def stretch(x: Any, p: Parameters, b: Number) -> Any:
     """dv/dx [m]."""
-    return 0.5 * p.H0 * b / jnp.cosh(b * x) ** 2 / jnp.tanh(b)
+    f = functions(x, b)
+    return 0.5 * p.H0 * b / f.cosh(b * x) ** 2 / f.tanh(b)

@@ -52,7 +52,7 @@ def save_sensitivity(found: Sensitivity, path: str | PathLike[str], force: bool 
 
 def rows(result: Result) -> Iterator[dict[str, Any]]:
     """The variables of each state as plain Python values in SI; None for a number that is not there."""
-    columns = {name: result.data[name].values.tolist() for name in STEP}
+    columns = {name: result.column(name).tolist() for name in STEP}
     for state in range(len(result)):
         values = {name: column[state] for name, column in columns.items()}
         yield {name: None if value != value else value for name, value in values.items()}
@@ -70,7 +70,7 @@ def _cell(value: Any) -> str:
 
 
 def _comments(result: Result) -> Iterator[str]:
-    about = result.data.attrs
+    about = result.attributes
     yield about["title"]
     yield f"made by mckibben {about['mckibben_version']} ({about['versions']}) on {about['date']}"
     yield f"assumed, not measured: {about['assumed'] or 'nothing'}"

@@ -10,7 +10,7 @@ from typing import Any, NamedTuple
 import jax
 import jax.numpy as jnp
 
-from .parameters import Number
+from .parameters import Number, functions
 
 
 class Known(NamedTuple):
@@ -48,17 +48,17 @@ def _cosine_jvp(at: tuple[Number, ...], by: tuple[Number, ...]) -> tuple[Number,
 
 def sin(angle: Any) -> Number:
     """Sine of a number or of a `Known` angle."""
-    return _sine(*angle) if isinstance(angle, Known) else jnp.sin(angle)
+    return _sine(*angle) if isinstance(angle, Known) else functions(angle).sin(angle)
 
 
 def cos(angle: Any) -> Number:
     """Cosine of a number or of a `Known` angle."""
-    return _cosine(*angle) if isinstance(angle, Known) else jnp.cos(angle)
+    return _cosine(*angle) if isinstance(angle, Known) else functions(angle).cos(angle)
 
 
 def tan(angle: Any) -> Number:
     """Tangent of a number or of a `Known` angle."""
-    return sin(angle) / cos(angle) if isinstance(angle, Known) else jnp.tan(angle)
+    return sin(angle) / cos(angle) if isinstance(angle, Known) else functions(angle).tan(angle)
 
 
 def slope(function: Callable[[Any], Number], at: Any) -> Number:

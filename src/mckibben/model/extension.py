@@ -1,12 +1,11 @@
 """Full extension: the longest admissible length of an inextensible braid. The force grows without bound towards it."""
 
 import math
-
-from scipy.optimize import brentq
-from scipy.special import elliprd, elliprf
+from collections.abc import Callable
 
 from .. import spec
-from .parameters import Number
+from ..units import Number
+from .elliptic import elliprd, elliprf
 
 LONG = 25.0
 """From this T on, the long muscle's limit is exact: what it leaves out is of order T exp(-2 T)."""
@@ -29,7 +28,7 @@ def full_extension(R0: Number, H0: Number, theta0: Number, ends: str) -> float:
         return fibre - 2.0 * unit * (1.0 - math.sin(angle))
     # Each half of the fibre lies between T and T/sin(theta0); the bracket is wider because of rounding.
     lowest, highest = 0.5 * math.sin(angle) * half, 2.0 * half
-    found = brentq(lambda T: _halves(T, angle)[0] - half, lowest, highest, xtol=1e-300, rtol=1e-15)
+    found = _root(lambda T: _halves(T, angle)[0] - half, lowest, highest)
     return 2.0 * unit * _halves(found, angle)[1]
 
 
@@ -43,5 +42,23 @@ def _halves(T: float, angle: float) -> tuple[float, float]:
     q = math.cosh(T) ** -2
     k = sine**2 + (cosine * tanh) ** 2  # 1 - xm^2
     y = sine**2 * q / k
-    fibre = tanh * float(elliprf(q, 1.0, y))
-    return fibre, math.sqrt(k) * (fibre - cosine**2 * q / (3.0 * k) * tanh**3 * float(elliprd(1.0, y, q)))
+    fibre = tanh * elliprf(q, 1.0, y)
+    return fibre, math.sqrt(k) * (fibre - cosine**2 * q / (3.0 * k) * tanh**3 * elliprd(1.0, y, q))
+
+
+def _root(function: Callable[[float], float], low: float, high: float) -> float:
+    """Zero of a rising function between low and high, to rounding: false position, where one end may not stay long."""
+    below, above, last = function(low), function(high), 0.0
+    while True:
+        middle = low - below * (high - low) / (above - below)
+        if not low < middle < high:
+            return min(max(middle, low), high)
+        value = function(middle)
+        if value == 0.0 or high - low <= 1e-15 * high:
+            return middle
+        stays = 0.5 if value * last > 0.0 else 1.0  # the Illinois rule
+        if value < 0.0:
+            low, below, above = middle, value, stays * above
+        else:
+            high, above, below = middle, value, stays * below
+        last = value

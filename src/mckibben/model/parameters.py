@@ -3,18 +3,28 @@
 Numbers are leaves of JAX pytrees (they can be traced, differentiated and batched), choices are static.
 """
 
-import math
 from collections.abc import Callable
 from typing import Any, NamedTuple
 
 import attrs
 import jax
 import jax.numpy as jnp
+import numpy as np
 
 from .. import spec
+from ..units import is_traced
+from . import pytrees as pytrees  # spec objects become pytrees with the first use of the model
+
+jax.config.update("jax_enable_x64", True)  # here, because everything that computes with JAX imports this module
 
 Number = Any
 """A float, a NumPy or JAX scalar, or a tracer."""
+
+
+def functions(*values: Number) -> Any:
+    """NumPy for plain numbers and arrays, where nothing is to be compiled; `jax.numpy` where JAX is in a value."""
+    return jnp if any(is_traced(value) for value in values) else np
+
 
 Law = Callable[[Number, Number, Number, Any], Number]
 """Hyperelastic law: energy density [Pa] from the three principal stretches and the law's constants."""
@@ -37,7 +47,7 @@ class Parameters(NamedTuple):
 
 def parameters(muscle: "spec.Muscle") -> Parameters:
     """Numbers of a muscle; differentiable with respect to every number of its specification."""
-    return jax.tree.map(lambda x: jnp.asarray(x, float), numbers(muscle))
+    return jax.tree.map(lambda x: functions(x).asarray(x, float), numbers(muscle))
 
 
 def numbers(muscle: "spec.Muscle") -> Parameters:
@@ -48,7 +58,7 @@ def numbers(muscle: "spec.Muscle") -> Parameters:
     return Parameters(
         braid.radius, braid.length, braid.angle, braid.fibres, B1, B2, B3,
         1.0 if fibre.natural == "helical" else 0.0,
-        math.pi * thickness * (thickness + 2.0 * braid.radius),
+        np.pi * thickness * (thickness + 2.0 * braid.radius),
         () if chamber is None else constants(chamber.law),
     )  # fmt: skip
 

@@ -4,7 +4,6 @@ The unknowns are w = (u, force, pressure); the last two equations hold any two o
 Where a step cannot be taken the function stops and says how many states are good; nothing is lost.
 """
 
-from functools import partial
 from typing import NamedTuple
 
 import jax
@@ -12,6 +11,7 @@ import jax.numpy as jnp
 import numpy as np
 from jaxtyping import Array, Float, Int
 
+from ..kernel import kernel
 from ..model.parameters import Number, Parameters
 from .problem import Space
 
@@ -86,7 +86,7 @@ def _take(
     return step._replace(change=last)
 
 
-@partial(jax.jit, static_argnums=0)
+@kernel
 def follow(
     space: Space,
     p: Parameters,

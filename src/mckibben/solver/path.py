@@ -8,10 +8,11 @@ from collections.abc import Callable
 import attrs
 import numpy as np
 
+from ..model.parameters import Parameters
 from .direct import find
 from .equilibrium import Equilibrium, Held
 from .follow import follow, padded
-from .problem import LENGTH, VOLUME, Problem
+from .problem import LENGTH, VOLUME, Problem, Space, evaluate
 from .trust import imbalance
 
 INTERRUPTED = "interrupted"
@@ -35,6 +36,15 @@ class Trace:
     def state(self, k: int) -> Equilibrium:
         """One state with its totals and residual."""
         return settle(self.problem, self.u[k], self.loads[k], int(self.iterations[k]))
+
+
+def prepare(space: Space, p: Parameters, b: float, count: int) -> None:
+    """Have what follows a path of `count` states compiled in the background (see `kernel`)."""
+    u = np.empty(space.basis.unknowns)
+    evaluate.prepare(space, p, b, u)
+    if count > 1 and not space.basis.closes:
+        w, targets = np.empty(len(u) + 2), padded(np.empty((count, 2)))
+        follow.prepare(space, p, b, w, np.empty((2, 4)), targets, np.asarray(count), np.asarray(0.0))
 
 
 def settle(problem: Problem, u: np.ndarray, loads: np.ndarray, iterations: int) -> Equilibrium:
@@ -107,8 +117,8 @@ def _follow(problem: Problem, path: list[Held], here: Equilibrium, tolerance: fl
     w = np.concatenate([here.u, here.loads[[LENGTH, VOLUME]]])
     count, close = np.asarray(len(path)), np.asarray(tolerance)
     track = follow(problem.space, problem.p, problem.b, w, path[0].select(), padded(targets), count, close)
-    good = int(track.good)
-    return [(np.asarray(track.w[k]), int(track.iterations[k])) for k in range(1, good)]
+    w, iterations = np.asarray(track.w), np.asarray(track.iterations)
+    return [(w[k], int(iterations[k])) for k in range(1, int(track.good))]
 
 
 def _search(problem: Problem, here: Held, there: Held, state: Equilibrium, depth: int = 6) -> Equilibrium:

@@ -1,12 +1,11 @@
 """Where to put points before solving: the end layer that the cylinder formula foretells."""
 
-from functools import partial
-
 import jax
 import jax.numpy as jnp
 import numpy as np
 from jaxtyping import Array, Float
 
+from ..kernel import kernel
 from ..model.cylinder import cylinder_force, cylinder_length, end_layer
 from ..model.kinematics import radius
 from ..model.parameters import Law, Parameters
@@ -14,7 +13,7 @@ from ..model.parameters import Law, Parameters
 UNIFORM, STEEPEST = 0.5, 8.0
 
 
-@partial(jax.jit, static_argnums=0)
+@kernel
 def crowdings(law: Law, p: Parameters, length: Array, force: Array, pressure: Array) -> Float[Array, " n"]:
     """b for each of n states of given length, or of given force where the length is NaN."""
     angles = jnp.linspace(jnp.deg2rad(3.0), jnp.deg2rad(88.0), 341)

@@ -1,10 +1,8 @@
 """One muscle on one discretisation: the functions a solver calls, compiled once per kind of muscle and size."""
 
-from functools import partial
 from typing import Any
 
 import attrs
-import jax
 import jax.numpy as jnp
 import numpy as np
 from jaxtyping import Array, Float
@@ -13,6 +11,7 @@ from ..discretise.assemble import Assembly, assemble
 from ..discretise.bspline import Spline
 from ..discretise.line import Line
 from ..discretise.mesh import Mesh
+from ..kernel import kernel
 from ..model.energy import quantities, scales
 from ..model.parameters import Law, Number, Parameters
 
@@ -41,13 +40,13 @@ class Space:
         return assemble(self.mesh(p, b), self.basis.form, self.density(p), u, p, coefficients)
 
 
-@partial(jax.jit, static_argnums=0)
+@kernel
 def setting(space: Space, p: Parameters, b: Number) -> tuple[Float[Array, " 4"], Mesh]:
     """Units of the four quantities, and the operators."""
     return scales(p, space.law), space.mesh(p, b)
 
 
-@partial(jax.jit, static_argnums=0)
+@kernel
 def evaluate(space: Space, p: Parameters, b: Number, u: Float[Array, " m"]) -> Assembly:
     """The four quantities with gradients and one tangent each."""
     return space.assemble(p, b, u, jnp.eye(4))

@@ -4,7 +4,6 @@ Three counts: symmetric modes under length control, symmetric modes under force 
 change neither length nor volume to first order, so the control does not matter to them).
 """
 
-from functools import partial
 from typing import NamedTuple
 
 import attrs
@@ -16,7 +15,9 @@ from jaxtyping import Array, Float
 from ..discretise.assemble import carry, localise
 from ..discretise.line import Line
 from ..discretise.mesh import values
+from ..kernel import kernel
 from ..model.parameters import Number, Parameters
+from ..verdict import Modes
 from .problem import CLOSURE, LENGTH, VOLUME, Space
 
 
@@ -31,7 +32,7 @@ class Stiffness(NamedTuple):
     closure: Float[Array, "n a"]
 
 
-@partial(jax.jit, static_argnums=0)
+@kernel
 def stiffness(space: Space, p: Parameters, b: Number, u: Float[Array, "n m"], loads: Float[Array, "n 4"]) -> Stiffness:
     """Tangent stiffness of states u under loads (1, force, pressure, closure), dimensionless."""
     rows = jnp.concatenate([jnp.ones((len(u), 1)), -loads[:, 1:]], axis=1)[:, None]
@@ -49,26 +50,6 @@ def stiffness(space: Space, p: Parameters, b: Number, u: Float[Array, "n m"], lo
     if basis.ends == "free":
         closure = closure.at[:, -1].add(1.0)
     return Stiffness(tangent, gradients, base.totals, base.state, even.tangents[:, 0], closure)
-
-
-@attrs.frozen
-class Modes:
-    """Numbers of negative modes, and the softest stiffness of each kind over the stiffest.
-
-    The antisymmetric ones are None where a discretisation does not separate them.
-    """
-
-    length_control: int
-    force_control: int
-    antisymmetric: int | None
-    softest_length: float
-    softest_force: float
-    softest_antisymmetric: float | None
-
-    def softest(self, length_held: bool) -> float:
-        """Least stiffness of any symmetry under length or force control: zero at a limit of stability."""
-        symmetric = self.softest_length if length_held else self.softest_force
-        return symmetric if self.softest_antisymmetric is None else min(symmetric, self.softest_antisymmetric)
 
 
 def count_modes(space: Space, s: Stiffness, pressure_held: bool = True) -> list[Modes]:

@@ -1,0 +1,217 @@
+"""Compiled functions: `@kernel` is `jax.jit` with the first argument static, and knows executables kept on the disk.
+
+Inside `keeping(folder)` a kernel is read from the folder, or compiled and written to it. Kernels there are compiled
+with the least optimisation: a single curve takes some milliseconds more, and the first one several seconds less.
+"""
+
+import functools
+import secrets
+import threading
+from collections.abc import Callable, Iterator
+from concurrent.futures import Future, ThreadPoolExecutor
+from contextlib import contextmanager, suppress
+from pathlib import Path
+from typing import Any, NamedTuple
+
+import attrs
+import jax
+import numpy as np
+
+from . import kept
+
+OPTIONS: dict[str, Any] = {"xla_cpu_use_fusion_emitters": False}
+"""For repeated use: with the former emitters of loops XLA compiles in two thirds of the time, to faster code."""
+QUICK: dict[str, Any] = OPTIONS | {"xla_backend_optimization_level": 0}
+"""For a single use: half the time to compile again, three times the time to run."""
+
+
+def _known(options: dict[str, Any]) -> dict[str, Any] | None:
+    """Options that this compiler takes: None on other devices than the CPU, and where it no longer has them."""
+    return options if _takes(tuple(options.items())) else None
+
+
+@functools.cache
+def _takes(options: tuple[tuple[str, Any], ...]) -> bool:
+    if jax.default_backend() != "cpu":
+        return False
+    try:
+        jax.jit(lambda x: x).lower(0.0).compile(compiler_options=dict(options))
+    except jax.errors.JaxRuntimeError:
+        return False
+    return True
+
+
+@attrs.frozen
+class _Place:
+    """Where kernels are kept, and who compiles them ahead."""
+
+    folder: Path
+    pool: ThreadPoolExecutor
+
+
+_place: _Place | None = None
+
+
+@contextmanager
+def keeping(folder: Path) -> Iterator[None]:
+    """Keep kernels in a folder, if nobody else can write to it and they run on the CPU."""
+    global _place
+    if not (jax.default_backend() == "cpu" and kept.private(folder)):
+        yield
+        return
+    before = _place
+    with ThreadPoolExecutor(max_workers=2, thread_name_prefix="kernels") as pool:
+        _place = _Place(folder, pool)
+        try:
+            yield
+        finally:
+            _place = before
+            pool.shutdown(wait=False, cancel_futures=True)
+
+
+class _Apart:
+    """While this is entered, by any number of threads, nothing goes into JAX's own cache."""
+
+    def __init__(self) -> None:
+        self._lock, self._inside, self._before = threading.Lock(), 0, 0.0
+
+    def __enter__(self) -> None:
+        with self._lock:
+            if not self._inside:
+                self._before = jax.config.values[_LEAST_TIME]
+                jax.config.update(_LEAST_TIME, float("inf"))
+            self._inside += 1
+
+    def __exit__(self, *error: object) -> None:
+        with self._lock:
+            self._inside -= 1
+            if not self._inside:
+                jax.config.update(_LEAST_TIME, self._before)
+
+
+_LEAST_TIME = "jax_persistent_cache_min_compile_time_secs"
+_apart = _Apart()
+
+
+class _Kind(NamedTuple):
+    """One executable of a kernel."""
+
+    folder: Path
+    static: Any
+    tree: Any
+    shapes: tuple[Any, ...]
+
+
+def _shapes(leaves: list[Any]) -> tuple[Any, ...]:
+    return tuple((np.shape(leaf), leaf.dtype if hasattr(leaf, "dtype") else np.dtype(type(leaf))) for leaf in leaves)
+
+
+class Kernel:
+    """A function compiled for each static first argument and each set of shapes; the other arguments are arrays."""
+
+    def __init__(self, function: Callable[..., Any]) -> None:
+        functools.update_wrapper(self, function)
+        self._name = f"{function.__module__}.{function.__qualname__}"
+        self._function = function
+        self._inside: Any = jax.jit(function, static_argnums=0)  # within other compiled functions
+        self._kept: dict[Any, Future[Any]] = {}
+        self._lock = threading.Lock()
+
+    @functools.cached_property
+    def _jit(self) -> Any:
+        return jax.jit(self._function, static_argnums=0, compiler_options=_known(OPTIONS))
+
+    def lower(self, *args: Any) -> Any:
+        """As of `jax.jit`."""
+        return self._jit.lower(*args)
+
+    def __reduce__(self) -> str:
+        return self._function.__qualname__  # a kernel is known by its module and name
+
+    def __call__(self, *args: Any) -> Any:
+        static, arrays = args[0], args[1:]
+        leaves, tree = jax.tree.flatten(arrays)
+        if any(isinstance(leaf, jax.core.Tracer) for leaf in leaves):
+            return self._inside(*args)
+        if _place is None:
+            return self._jit(*args)
+        kind = _Kind(_place.folder, static, tree, _shapes(leaves))
+        found = self._find(kind)
+        if found is not None:
+            try:
+                return jax.block_until_ready(found(*arrays))
+            except (TypeError, ValueError, jax.errors.JaxRuntimeError):  # read, but not what it should be
+                self._drop(kind)
+        return self._jit(*args)
+
+    def prepare(self, static: Any, *arrays: Any) -> None:
+        """Have the kernel read or compiled in the background, where kernels are kept; arrays count by shape alone."""
+        if _place is not None:
+            leaves, tree = jax.tree.flatten(arrays)
+            _place.pool.submit(self._find, _Kind(_place.folder, static, tree, _shapes(leaves)))
+
+    def _find(self, kind: _Kind) -> Any:
+        """The executable, made once and waited for by others; None where it cannot be kept."""
+        with self._lock:
+            known = self._kept.get(kind)
+            if known is None:
+                mine = self._kept[kind] = Future()
+        if known is not None:
+            return known.result()
+        found = None
+        try:
+            file = self._file(kind)
+            if file is not None:
+                found = kept.read(file)
+                if found is None:
+                    found = self._compile(kind)
+                    kept.write(file, found)
+        finally:
+            mine.set_result(found)
+        return found
+
+    def _file(self, kind: _Kind) -> Path | None:
+        try:
+            key = kept.key(self._name, kind.static, (str(kind.tree), kind.shapes), QUICK)
+        except kept.UnkeepableError:
+            return None
+        return kind.folder / f"{self._function.__name__.strip('_')}-{key}{kept.SUFFIX}"
+
+    def _drop(self, kind: _Kind) -> None:
+        """Neither use nor keep an executable again."""
+        file = self._file(kind)
+        if file is not None:
+            with suppress(OSError):
+                file.unlink()
+        nothing: Future[Any] = Future()
+        nothing.set_result(None)
+        self._kept[kind] = nothing
+
+    def _compile(self, kind: _Kind) -> Any:
+        """Compiled for one use, apart from JAX's own cache: what that reads back cannot be written again.
+
+        So the name is new each time, and nothing is put there.
+        """
+
+        def once(*args: Any) -> Any:
+            return self._function(*args)
+
+        once.__name__ = f"{self._function.__name__}_{secrets.token_hex(4)}"
+        arrays = jax.tree.unflatten(kind.tree, [jax.ShapeDtypeStruct(*shape) for shape in kind.shapes])
+        lowered = jax.jit(once, static_argnums=0).lower(kind.static, *arrays)
+        with _apart:
+            return lowered.compile(compiler_options=_known(QUICK))
+
+    def _cache_size(self) -> int:
+        return self._jit._cache_size() + self._inside._cache_size() + len(self._kept)
+
+    def clear_cache(self) -> None:
+        """Forget what was compiled in this process."""
+        self._jit.clear_cache()
+        self._inside.clear_cache()
+        self._kept.clear()
+
+
+def kernel(function: Callable[..., Any]) -> Kernel:
+    """Compile a function whose first argument is static (hashable) and whose others are arrays."""
+    return Kernel(function)
