@@ -29,7 +29,7 @@ points = 3
 """
 BEYOND = 'test.length="130 mm"'
 """Every state lies beyond full extension, so that nothing is compiled: fast."""
-COMMANDS = ("run", "check", "presets", "plot", "reproduce", "info")
+COMMANDS = ("run", "sweep", "check", "presets", "plot", "reproduce", "info")
 
 
 def invoke(*words: object) -> Result:

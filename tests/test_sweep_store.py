@@ -239,6 +239,23 @@ def test_command_line(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     assert "the disk is full" in errors
 
 
+def test_interruption_of_the_command(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    file, single, left = tmp_path / "sweep.toml", chunk.run, [3]
+    file.write_text(SWEEP + GRID, encoding="utf-8")
+
+    def interrupted(*args: object, **options: object) -> mk.Result:
+        left[0] -= 1
+        if left[0] == 0:
+            raise KeyboardInterrupt
+        return single(*args, **options)
+
+    monkeypatch.setattr(chunk, "run", interrupted)
+    code, shown, errors = invoke("sweep", file, "--workers", 0)
+    assert (code, shown) == (130, "")
+    assert errors.startswith("mckibben: interrupted: about 2 of 6 designs are in ")
+    assert "the same command goes on from there" in errors
+
+
 def test_command_line_table(tmp_path: Path) -> None:
     file = tmp_path / "sweep.toml"
     file.write_text(SWEEP + 'designs = "designs.csv"', encoding="utf-8")
