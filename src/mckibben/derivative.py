@@ -12,7 +12,7 @@ from jaxtyping import Array
 
 from .differentiable import differentiable
 from .experiment import Bench, solved
-from .judge import Judgement, Verdict
+from .judge import Judgement
 from .model.parameters import Number, parameters
 from .observe import OBSERVED, observe
 from .report import Part, versions
@@ -24,6 +24,7 @@ from .spec import Muscle, SpecError, Step, Test, numbers
 from .spec.declared import Declared, evolved
 from .spec.errors import nearest
 from .spec.text import to_toml
+from .verdict import Verdict
 
 ZERO = 1e-9
 """Part of its natural size below which a result counts as zero: per cents of it would be those of rounding errors."""

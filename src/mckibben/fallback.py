@@ -6,12 +6,12 @@ import attrs
 
 from .branch import BranchEnd, Look, branch_end, look
 from .experiment import Bench
-from .judge import Verdict
 from .sharpen import error_of, sharpened
 from .solver.direct import find
 from .solver.equilibrium import Equilibrium, Held
 from .starts import starts
 from .tipping import tip, tip_on
+from .verdict import Verdict
 
 SEARCH, REFINED = 48, ((24, 1e-5), (48, 1e-8), (96, 1e-8), (192, 1e-8))
 """Unknowns of the searches from other starts; unknowns of the walk along the way, and to what share of it."""

@@ -3,11 +3,11 @@
 from .branch import Look, look
 from .discretise.line import Line
 from .experiment import Bench
-from .judge import Verdict
 from .recover import recover
 from .solver.direct import find, refine
 from .solver.equilibrium import Equilibrium, Held
 from .survey import error_estimate
+from .verdict import Verdict
 
 HALF, FULL = (24, 48, 96, 192), (48, 96, 192)
 """Unknowns of symmetric and of other shapes, tried in turn; the largest serve the few states that need them."""

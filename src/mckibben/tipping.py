@@ -6,11 +6,11 @@ import numpy as np
 from .branch import BranchEnd, Look, branch_end, look
 from .discretise.line import Line
 from .experiment import Bench
-from .judge import Verdict
 from .sharpen import FULL, sharpened
 from .solver.direct import find
 from .solver.equilibrium import Equilibrium, Held
 from .solver.stability import stiffness, weakest
+from .verdict import Verdict
 
 KICK = 0.1
 """Slope [rad] by which a shape is pushed to one side."""

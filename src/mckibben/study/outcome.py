@@ -12,10 +12,24 @@ from typing import Any
 import attrs
 import numpy as np
 
-from mckibben.judge import Verdict
 from mckibben.result import FIELDS, STEP, Result
+from mckibben.verdict import Verdict
 
-__all__ = ["DESIGN", "METHODS", "STATES", "STATUSES", "Columns", "Kept", "Method", "Status", "empty", "keep", "refuse"]
+__all__ = [
+    "DESIGN",
+    "METHODS",
+    "STATES",
+    "STATUSES",
+    "Columns",
+    "Kept",
+    "Kinds",
+    "Method",
+    "Status",
+    "empty",
+    "keep",
+    "keep_curve",
+    "refuse",
+]
 
 Columns = dict[str, np.ndarray]
 """The variables of some designs: (designs, steps) or (designs)."""
@@ -115,6 +129,32 @@ def keep(columns: Columns, k: int, result: Result) -> None:
     if not complete:
         bad = next(i for i, word in enumerate(result.verdict) if word not in (Verdict.STABLE, Verdict.UNSTABLE))
         columns["reason"][k] = f"state {bad}: {data['reason'].values[bad]}"
+
+
+@attrs.frozen
+class Kinds:
+    """What n states are: their verdicts, the reasons for them, and the counts of unstable modes."""
+
+    verdicts: list[str]
+    reasons: list[str]
+    length_control: np.ndarray
+    force_control: np.ndarray
+    antisymmetric: np.ndarray
+
+
+def keep_curve(columns: Columns, k: int, numbers: dict[str, np.ndarray], kinds: Kinds) -> None:
+    """Put the states of a batch into the columns as design k; of a state that is no good the numbers are NaN."""
+    good = np.isin(kinds.verdicts, [Verdict.STABLE, Verdict.UNSTABLE])
+    for name in (*_NUMBERS, *_LARGEST):
+        columns[name][k] = np.where(good, numbers[name], np.nan)
+    for name in ("length_control", "force_control", "antisymmetric"):
+        columns[f"modes_{name}"][k] = getattr(kinds, name)
+    columns["verdict"][k] = [VERDICTS.index(Verdict(word)) for word in kinds.verdicts]
+    columns["status"][k] = STATUSES.index(Status.COMPLETE if good.all() else Status.INCOMPLETE)
+    columns["method"][k] = METHODS.index(Method.BATCH)
+    if not good.all():
+        bad = int(np.argmin(good))
+        columns["reason"][k] = f"state {bad}: {kinds.reasons[bad]}"
 
 
 def refuse(columns: Columns, k: int, status: Status, reason: str) -> None:
