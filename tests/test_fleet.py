@@ -42,9 +42,10 @@ def singly(muscle: mk.Muscle, test: mk.Isometric | mk.Isobaric | mk.Isotonic, to
 def test_a_batch_gives_the_numbers_of_single_runs(ends: str, test: mk.Isometric | mk.Isobaric | mk.Isotonic) -> None:
     some = muscles(ends)
     curves = fleet.solve_together([fleet.ask(muscle, test) for muscle in some], 1e-6)
-    assert all(curve is not None for curve in curves)
-    for muscle, curve in zip(some[:3], curves, strict=False):
-        assert curve is not None
+    followed = [(muscle, curve) for muscle, curve in zip(some, curves, strict=True) if curve is not None]
+    # free ends under a held force are nearly singular: some of those are left to the single solver
+    assert len(followed) == len(some) or (ends == "free" and test.kind == "isotonic")
+    for muscle, curve in followed[:3]:
         one = singly(muscle, test, 1e-6)
         for name in SAME:
             size = np.abs(one.data[name].values).max()
@@ -60,7 +61,7 @@ def test_a_batch_gives_the_numbers_of_single_runs(ends: str, test: mk.Isometric 
 
 def test_what_a_batch_cannot_follow_is_left_to_the_single_solver() -> None:
     test = mk.Isometric(length="55 mm", pressure="0 to 1 bar", points=5)  # pinned, the unpressurised braid folds
-    some = [PAPER, PAPER.replace("ends", "pinned")]
+    some = [mk.presets.reference(), mk.presets.reference().replace("ends", "pinned")]
     curves = fleet.solve_together([fleet.ask(muscle, test) for muscle in some], 1e-6)
     assert curves[0] is not None
     assert curves[1] is None
