@@ -42,10 +42,11 @@ def singly(muscle: mk.Muscle, test: mk.Isometric | mk.Isobaric | mk.Isotonic, to
 def test_a_batch_gives_the_numbers_of_single_runs(ends: str, test: mk.Isometric | mk.Isobaric | mk.Isotonic) -> None:
     some = muscles(ends)
     curves = fleet.solve_together([fleet.ask(muscle, test) for muscle in some], 1e-6)
-    followed = [(muscle, curve) for muscle, curve in zip(some, curves, strict=True) if curve is not None]
-    # free ends under a held force are nearly singular: some of those are left to the single solver
-    assert len(followed) == len(some) or (ends == "free" and test.kind == "isotonic")
-    for muscle, curve in followed[:3]:
+    if ends == "free" and test.kind == "isotonic":
+        assert curves == [None] * len(some)
+        return
+    for muscle, curve in zip(some[:3], curves, strict=False):
+        assert curve is not None
         one = singly(muscle, test, 1e-6)
         for name in SAME:
             size = np.abs(one.data[name].values).max()

@@ -28,7 +28,7 @@ OBSERVED: dict[str, tuple[str, str]] = {
 }  # fmt: skip
 """Results of one state: unit and meaning."""
 
-WINDOW = 7
+WINDOW = 9
 """Nodes through which a maximum between nodes is sought."""
 _OFFSETS = np.arange(WINDOW) - float(WINDOW // 2)
 _SERIES = np.linalg.inv(np.vander(_OFFSETS))

@@ -28,7 +28,7 @@ def tornado(sensitivity: Sensitivity) -> Figure:
     data = sensitivity.data
     share, results = data["relative"].values, [str(name) for name in data["result"].values]
     drawn = np.isfinite(share).any(axis=0)
-    rows = [k for k in sensitivity.order if np.isfinite(share[k]).any()]
+    rows = [k for k in sensitivity.order.tolist() if np.isfinite(share[k]).any()]
     if not rows:
         return _nothing(sensitivity)
     columns = [j for j in range(len(results)) if drawn[j]]
