@@ -1,15 +1,20 @@
-"""Measure, print a table, and write out/bench.json and out/bench.png: `make bench`.
+"""Measure, print tables, and write out/bench.json, out/bench.png and out/scaling.png: `make bench`.
 
 Every time hangs on the machine and on what else it does. What counts are the ratios of rows measured in the same run.
+`python benchmarks/run.py --quick` leaves out how cost grows, which takes minutes.
 """
 
 import json
+import sys
 from pathlib import Path
 from typing import Any
 
+import batch
 import command
 import curve
+import others
 import peer
+import scaling
 from timing import machine
 
 from mckibben.app import cache
@@ -19,21 +24,28 @@ OUT = Path(__file__).parent.parent / "out"
 
 
 def main() -> None:
-    """Everything, in two minutes or so of processor time."""
+    """Everything, in some minutes."""
     about = machine()
     cache.use()  # what an earlier run compiled is not compiled again: it is not part of any time but the commands'
     exact = curve.reference()
-    rows = curve.measure(exact) + curve.measure_others(exact) + peer.measure(exact) + command.measure()
+    rows = curve.measure(exact) + batch.measure() + curve.measure_others(exact)
+    rows += others.measure(exact) + peer.measure(exact) + command.measure()
     following = next(row for row in rows if row["name"].startswith("following alone, 24"))
     unit = following["processor_s"] / following["states"]
     for row in rows:
         row["ratio"] = row["processor_s"] / row["states"] / unit
     OUT.mkdir(exist_ok=True)
     report = {"machine": about, "test": "case a: 115 mm, 0 to 1 bar, preset paper", "rows": rows}
+    if "--quick" not in sys.argv:
+        report["scaling"] = scaling.measure()
+        report["cluster"] = scaling.cluster(report["scaling"]["sweeps"])
     (OUT / "bench.json").write_text(json.dumps(report, indent=1) + "\n", encoding="utf-8")
     show(rows)
     picture(rows)
-    print(f"{OUT.name}/bench.json, {OUT.name}/bench.png")
+    if "scaling" in report:
+        show_growth(report["scaling"], report["cluster"])
+        picture_growth(report["scaling"])
+    print(f"{OUT.name}/bench.json, {OUT.name}/bench.png" + (f", {OUT.name}/scaling.png" if "scaling" in report else ""))
 
 
 def show(rows: list[dict[str, Any]]) -> None:
@@ -44,9 +56,34 @@ def show(rows: list[dict[str, Any]]) -> None:
         off = "" if row["error"] is None else f"{row['error']:.1e}"
         times = f"{written(row['median_s'])} | {written(row['processor_s'])} | {row['ratio']:.2g}"
         print(f"| {row['name']} | {row['states']} | {times} | {off} |")
+    for row in rows:
+        if "curves_per_s" in row:
+            print(f"{row['name']}: {row['curves_per_s']:.0f} curves/s")
     print("time: median on the clock; processor time: of all threads, which other work on the machine disturbs less")
     print("ratio: processor time per state over that of following alone with 24 unknowns, in this run")
     print(f"error: largest, over the largest force of the curve, against {curve.EXACT} unknowns")
+
+
+def show_growth(growth: dict[str, Any], cluster: dict[str, float]) -> None:
+    """How cost grows, as Markdown."""
+    print("\n| one curve: unknowns | states | time |\n|---|---|---|")
+    for row in growth["unknowns"] + growth["states"]:
+        print(f"| {row['unknowns']} | {row['states']} | {written(row['least_s'])} |")
+    print("\n| muscles in step | time per curve |\n|---|---|")
+    for row in growth["together"]:
+        print(f"| {row['muscles']} | {written(row['least_s'])} |")
+    print("\n| designs | workers | time | designs/s | singly | client memory | largest worker | store |")
+    print("|---|---|---|---|---|---|---|---|")
+    for row in growth["sweeps"]:
+        sizes = f"{row['client_mb']:.0f} MB | {row['worker_mb']:.0f} MB | {row['store_mb']:.0f} MB"
+        share = f"{100.0 * row['single']:.1f} %"
+        head = f"| {row['designs']} | {row['workers']} | {written(row['median_s'])}"
+        print(f"{head} | {row['designs_per_s']:.0f} | {share} | {sizes} |")
+    print(
+        f"\nOn paper, {cluster['designs']:.0e} designs: {cluster['core_hours']:.0f} core hours "
+        f"({cluster['hours_on_1000_cores']:.1f} h on 1000 cores), {cluster['store_tb']:.2g} TB, "
+        f"{cluster['mb_per_s_into_the_store_on_1000_cores']:.0f} MB/s into the store"
+    )
 
 
 def written(seconds: float) -> str:
@@ -74,6 +111,28 @@ def picture(rows: list[dict[str, Any]]) -> None:
         figure, "Case a of the paper, everything compiled; one machine, one run: compare only points in the picture."
     )
     style.save(figure, OUT / "bench", ("png",))
+
+
+def picture_growth(growth: dict[str, Any]) -> None:
+    """Time against unknowns, states, muscles in step, and designs."""
+    figure = style.new_figure(style.PAGE, 4.6)
+    panels = figure.subplots(2, 2)
+    for axes, rows, name, label, per in (
+        (panels[0, 0], growth["unknowns"], "unknowns", "Unknowns (21 states)", 1e3),
+        (panels[0, 1], growth["states"], "states", "States (24 unknowns)", 1e3),
+        (panels[1, 0], growth["together"], "muscles", "Muscles that advance in step", 1e3),
+    ):
+        axes.plot([row[name] for row in rows], [per * row["least_s"] for row in rows], "o-", color=style.LINES[0])
+        axes.set(xscale="log", yscale="log", xlabel=label, ylabel="Time per curve (ms)")
+        style.tidy(axes)
+    for k, workers in enumerate((1, 2)):
+        rows = [row for row in growth["sweeps"] if row["workers"] == workers]
+        at, times = [row["designs"] for row in rows], [row["median_s"] for row in rows]
+        panels[1, 1].plot(at, times, "os"[k] + "-", color=style.LINES[k], label=f"{workers} worker{'s' * k}")
+    panels[1, 1].set(xscale="log", yscale="log", xlabel="Designs in a sweep (21 states, 1e-4)", ylabel="Time (s)")
+    panels[1, 1].legend(frameon=False, fontsize=style.TICK)
+    style.tidy(panels[1, 1])
+    style.save(figure, OUT / "scaling", ("png",))
 
 
 if __name__ == "__main__":

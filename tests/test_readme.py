@@ -53,7 +53,7 @@ def test_python_prints_what_the_readme_shows(tmp_path: Path, monkeypatch: pytest
             assert following == "text", "every Python block of the README is followed by what it prints"
             assert executed(code, names) == shown
             checked += 1
-    assert checked == 2
+    assert checked == 4
     assert (tmp_path / "curve.nc").exists()
 
 

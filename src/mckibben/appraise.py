@@ -13,6 +13,7 @@ import numpy as np
 from jaxtyping import Array, Bool, Float
 
 from .discretise.line import Line, stretch
+from .kernel import jitted
 from .model.angle import Known, slope
 from .model.chamber import chamber_density
 from .model.fibres import fibre_densities
@@ -122,7 +123,7 @@ def _fields(line: Line, law: Law, d: Design, b: Number, w: Array) -> dict[str, A
     }  # fmt: skip
 
 
-@partial(jax.jit, static_argnums=(0, 1))
+@partial(jitted, static_argnums=(0, 1))
 def appraised(
     line: Line,
     law: Law,

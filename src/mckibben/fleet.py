@@ -5,6 +5,7 @@ followed cleanly, state by state, is left to `run`.
 """
 
 from collections.abc import Callable, Sequence
+from concurrent.futures import ThreadPoolExecutor
 from functools import partial
 from itertools import groupby
 from typing import Any, TypeVar
@@ -17,6 +18,7 @@ import numpy as np
 from .appraise import ENERGIES, appraised
 from .discretise.line import Line
 from .experiment import corners, sizes_for
+from .kernel import jitted
 from .model.chamber import law_of
 from .model.parameters import Law, Parameters, numbers
 from .solver.equilibrium import NAMES, Held
@@ -33,6 +35,8 @@ LARGEST = 48
 """Half-length unknowns up to which a batch goes; what needs more is solved singly."""
 POLISH = 3
 """Newton steps for all states at once, at most."""
+PLAIN_SLOPE = 1.5
+"""Slope [rad] of the meridian below which no shape is anything but ordinary."""
 NEAR_EXTENSION = 0.98
 """Fraction of the longest possible length from which on a design is solved singly."""
 
@@ -93,20 +97,23 @@ def _surely_reached(p: Parameters, ends: str) -> float:
 
 
 def solve_together(
-    asks: Sequence[Ask | None], tolerance: float, watch: Callable[[int], None] = lambda done: None
+    asks: Sequence[Ask | None], tolerance: float, watch: Callable[[int], None] = lambda done: None, threads: int = 1
 ) -> list[Curve | None]:
-    """A curve for each design, or None where only the single solver will do."""
+    """A curve for each design, or None where only the single solver will do.
+
+    With several threads some batches are solved at a time; the numbers are the same.
+    """
     found: list[Curve | None] = [None] * len(asks)
     known = [(k, one) for k, one in enumerate(asks) if one is not None]
     known.sort(key=lambda pair: (repr(pair[1].kind[1:]), id(pair[1].law), pair[0]))
     for _, group in groupby(known, key=lambda pair: pair[1].kind):
         pairs = list(group)
-        for (k, _), curve in zip(pairs, _alike([one for _, one in pairs], tolerance, watch), strict=True):
+        for (k, _), curve in zip(pairs, _alike([one for _, one in pairs], tolerance, watch, threads), strict=True):
             found[k] = curve
     return found
 
 
-def _alike(asks: list[Ask], tolerance: float, watch: Callable[[int], None]) -> list[Curve | None]:
+def _alike(asks: list[Ask], tolerance: float, watch: Callable[[int], None], threads: int) -> list[Curve | None]:
     """Designs of one kind, on as many unknowns as the tolerance needs."""
     found: list[Curve | None] = [None] * len(asks)
     b = np.concatenate([_placement(some) for some in _split(asks, MOST)])
@@ -114,9 +121,12 @@ def _alike(asks: list[Ask], tolerance: float, watch: Callable[[int], None]) -> l
     for size in sizes:
         line = Line(size, asks[0].ends)
         curves: list[Curve | None] = []
-        for some in _split(left, batch_size(line.unknowns)):
-            curves += _on([asks[k] for k in some], b[some], line, tolerance)
-            watch(len(some))
+        with ThreadPoolExecutor(threads) as pool:
+            batches = _split(left, batch_size(line.unknowns))
+            tasks = [pool.submit(_on, [asks[k] for k in some], b[some], line, tolerance) for some in batches]
+            for task in tasks:
+                curves += task.result()
+                watch(len(curves))
         coarse = []
         for k, curve in zip(left, curves, strict=True):
             if curve is None:
@@ -132,18 +142,17 @@ def _alike(asks: list[Ask], tolerance: float, watch: Callable[[int], None]) -> l
 
 def _placement(asks: list[Ask]) -> np.ndarray:
     """Crowding of points for each design, as `run` places them."""
-    rows = np.array([one.corners for one in asks])  # (designs, corners, 3)
-    return np.asarray(_crowded(asks[0].law, _stack(asks, MOST), *np.moveaxis(_filled(rows, MOST), 2, 0))).max(axis=1)[
-        : len(asks)
-    ]
+    rows = _filled(np.array([one.corners for one in asks]), MOST)  # (designs, corners, 3)
+    found = np.asarray(_crowded(asks[0].law, _stack(asks, MOST), *np.moveaxis(rows, 2, 0)))
+    return np.asarray(found.max(axis=1)[: len(asks)])
 
 
-@partial(jax.jit, static_argnums=0)
+@partial(jitted, static_argnums=0)
 def _crowded(law: Law, p: Parameters, length: Any, force: Any, pressure: Any) -> Any:
     return jax.vmap(lambda *one: crowdings(law, *one))(p, length, force, pressure)
 
 
-@partial(jax.jit, static_argnums=(0, 1))
+@partial(jitted, static_argnums=(0, 1))
 def _designs(line: Line, law: Law, p: Parameters, b: Any) -> Design:
     return jax.vmap(partial(design, line, law))(p, b)
 
@@ -203,7 +212,3 @@ def _curve(one: Ask, line: Line, b: float, seen: Any, k: int, order: slice) -> C
     loads = seen.loads[order, k]
     plain = seen.antisymmetric[order, k] & (slope < PLAIN_SLOPE) & (loads | (one.held[0] == "length"))
     return Curve(line, b, one.held, seen.w[order, k], found, plain, loads)
-
-
-PLAIN_SLOPE = 1.5
-"""Slope [rad] of the meridian below which no shape is anything but ordinary."""

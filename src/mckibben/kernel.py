@@ -215,3 +215,17 @@ class Kernel:
 def kernel(function: Callable[..., Any]) -> Kernel:
     """Compile a function whose first argument is static (hashable) and whose others are arrays."""
     return Kernel(function)
+
+
+def jitted(function: Callable[..., Any], **settings: Any) -> Callable[..., Any]:
+    """`jax.jit` with the options for repeated use, which depend on the device: looked up when first called."""
+
+    @functools.cache
+    def made() -> Any:
+        return jax.jit(function, compiler_options=_known(OPTIONS), **settings)
+
+    @functools.wraps(function)
+    def call(*args: Any, **named: Any) -> Any:
+        return made()(*args, **named)
+
+    return call

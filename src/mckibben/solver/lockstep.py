@@ -25,13 +25,16 @@ LOADS = 2
 """Unknowns beside the shape's: force and pressure."""
 
 
-WORK, MOST = 200_000, 64
-"""jaxlib hands a batch of factorisations of WORK or more operations to the threads on which the program itself runs,
-which then wait for each other: it was seen to stop for ever. Nor do more than MOST muscles fit in the cache."""
+WORK, MOST, MANY = 200_000, 64, 1024
+"""On processors jaxlib hands a batch of factorisations of WORK or more operations to the threads on which the program
+itself runs, which then wait for each other: it was seen to stop for ever. Nor do more than MOST muscles fit in the
+cache. Other devices take MANY."""
 
 
 def batch_size(unknowns: int) -> int:
     """How many muscles advance in step: a power of two."""
+    if jax.default_backend() != "cpu":
+        return MANY
     return int(min(MOST, 2 ** np.floor(np.log2(0.99 * WORK / (unknowns**3 / 3.0)))))
 
 

@@ -11,6 +11,7 @@ import jax.numpy as jnp
 from jaxtyping import Array, Bool, Float, Int
 
 from ..discretise.line import Line
+from ..kernel import jitted
 from ..model.parameters import Law
 from .lockstep import LOADS, Design, constants, correct, sample, system
 
@@ -147,7 +148,7 @@ class March(NamedTuple):
     rows: Rows
 
 
-@partial(jax.jit, static_argnums=(0, 1), static_argnames=("limit", "corrections"))
+@partial(jitted, static_argnums=(0, 1), static_argnames=("limit", "corrections"))
 def march(
     line: Line,
     law: Law,

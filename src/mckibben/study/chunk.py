@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 import warnings
 from collections.abc import Callable
 
@@ -28,7 +29,8 @@ def solve(piece: Piece, watch: Callable[[int], None] | None = None) -> Columns:
     whose values do not go together, or on which the program fails, says so in its own `status` and `reason`.
     """
     columns, designs = empty(len(piece), piece.steps), list(piece.designs())
-    curves = solve_together([_ask(design) for design in designs], piece.tolerance)
+    threads = 1 if os.environ.get("PJRT_NPROC") == "1" else os.cpu_count() or 1  # a worker has one core to itself
+    curves = solve_together([_ask(design) for design in designs], piece.tolerance, threads=threads)
     done = sum(curve is not None for curve in curves)
     for k, (design, curve) in enumerate(zip(designs, curves, strict=True)):
         if isinstance(design, SpecError):

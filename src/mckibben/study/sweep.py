@@ -7,6 +7,7 @@ from functools import partial
 from os import PathLike
 from typing import Any
 
+import jax
 import xarray as xr
 
 from mckibben.experiment import sizes_for
@@ -46,8 +47,8 @@ def sweep(
         tolerance: relative error aimed at in force and length, as for `run`.
         to: a Zarr store ("out.zarr") that results go to as they come. A store that holds part of the same sweep is
             gone on with; one that holds another sweep is refused, or deleted with `force`.
-        workers: processes on this machine; by default as many as there are cores if there is more than one chunk.
-            0 for this process.
+        workers: processes on this machine; by default as many as there are cores if there is more than one chunk,
+            and none where JAX finds a GPU. 0 for this process.
         scheduler: address of a Dask scheduler that is running already ("tcp://host:8786"), in place of `workers`.
         chunk: designs solved at a time, 512 by default.
         watch: called with (designs done, designs in all).
@@ -90,7 +91,8 @@ def _finish(
     watch(done, total)
     if not missing:
         return
-    if scheduler is None and (workers == 0 or (workers is None and len(missing) == 1)):
+    alone = len(missing) == 1 or jax.default_backend() != "cpu"  # one process feeds a GPU; more would fight for it
+    if scheduler is None and (workers == 0 or (workers is None and alone)):
         for index in missing:
             keep(index, solve(wanted.piece(index), partial(_within, watch, done, total)))
     else:

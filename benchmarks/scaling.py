@@ -1,0 +1,99 @@
+"""How cost grows: with unknowns, states, muscles in step, workers, and up to 100,000 designs; memory beside it."""
+
+import resource
+import tempfile
+from pathlib import Path
+from typing import Any
+
+import batch
+import jax
+import numpy as np
+from curve import LONG, MUSCLE, problem
+from timing import once, timed
+
+import mckibben as mk
+from mckibben.app import cache
+from mckibben.discretise.line import Line
+from mckibben.solver.direct import find
+from mckibben.solver.equilibrium import Held
+from mckibben.solver.follow import follow, padded
+from mckibben.solver.march import march
+from mckibben.solver.problem import LENGTH, VOLUME
+
+UNKNOWNS, STATES, TOGETHER = (8, 12, 16, 24, 32, 48, 64, 96), (6, 21, 101, 401), (1, 4, 16, 64)
+DESIGNS = ((1_000, 1), (1_000, 2), (10_000, 1), (10_000, 2), (100_000, 2))
+"""(designs, workers) of sweeps into a store."""
+
+
+def following(unknowns: int, states: int) -> dict[str, Any]:
+    """One curve of the compiled following."""
+    on = problem(Line(unknowns))
+    path = [Held.of(length=LONG, pressure=float(pressure)) for pressure in np.linspace(0.0, 1e5, states)]
+    first = find(on, path[0])
+    w = np.concatenate([first.u, first.loads[[LENGTH, VOLUME]]])
+    targets = padded(np.array([held.targets(on) for held in path]))
+    count, close, select = np.asarray(states), np.asarray(1e-6), path[0].select()
+
+    def call() -> Any:
+        return jax.block_until_ready(follow(on.space, on.p, on.b, w, select, targets, count, close))
+
+    assert int(call().good) == states
+    return {"unknowns": unknowns, "states": states, **timed(call, 9)}
+
+
+def together() -> list[dict[str, Any]]:
+    """Curves that advance in step, per curve."""
+    (path, _), rows = batch.captured(batch.asks(64), batch.UNKNOWNS, batch.TOLERANCE)[0], []
+    line, law, designs, select, rest, targets, count = path
+    for size in TOGETHER:
+        some = jax.tree.map(lambda leaf, size=size: leaf[:size], (designs, rest, targets))
+        times = timed(
+            lambda some=some: jax.block_until_ready(march(line, law, some[0], select, some[1], some[2], count)), 9
+        )
+        rows.append({"muscles": size, **{k: v / size if k != "repeats" else v for k, v in times.items()}})
+    return rows
+
+
+def sweeping(designs: int, workers: int) -> dict[str, Any]:
+    """A sweep into a store at 1e-4; memory is the largest of this process so far and of any worker."""
+    over = {
+        "braid.angle": {"from": "33 deg", "to": "41 deg", "points": designs // 50},
+        "chamber.thickness": {"from": "0.6 mm", "to": "1.8 mm", "points": 50},
+    }
+    with tempfile.TemporaryDirectory() as folder:
+        store = Path(folder) / "sweep.zarr"
+        times, data = once(
+            lambda: mk.sweep(MUSCLE, batch.TEST, over, tolerance=batch.TOLERANCE, to=store, workers=workers)
+        )
+        complete = float((data["status"].values == 0).mean())
+        single = float((data["method"].values == 1).mean())
+        size = sum(file.stat().st_size for file in store.rglob("*") if file.is_file())
+    kinds = {"client": resource.RUSAGE_SELF, "worker": resource.RUSAGE_CHILDREN}
+    memory = {f"{name}_mb": resource.getrusage(kind).ru_maxrss / 1024 for name, kind in kinds.items()}
+    return {
+        "designs": designs, "workers": workers, "designs_per_s": designs / times["median_s"], "complete": complete,
+        "single": single, "store_mb": size / 2**20, **memory, **times,
+    }  # fmt: skip
+
+
+def measure() -> dict[str, Any]:
+    """Everything; the largest sweep takes minutes."""
+    cache.use()
+    return {
+        "unknowns": [following(unknowns, 21) for unknowns in UNKNOWNS],
+        "states": [following(24, states) for states in STATES],
+        "together": together(),
+        "sweeps": [sweeping(*size) for size in DESIGNS],
+    }
+
+
+def cluster(sweeps: list[dict[str, Any]], designs: float = 1e8) -> dict[str, float]:
+    """What many designs would need, from the largest sweep here: core hours and bytes, nothing else counted."""
+    last = sweeps[-1]
+    per_core = last["designs_per_s"] / last["workers"]
+    return {
+        "designs": designs, "core_hours": designs / per_core / 3600.0,
+        "store_tb": last["store_mb"] / last["designs"] * designs / 2**20,
+        "hours_on_1000_cores": designs / per_core / 3600.0 / 1000.0,
+        "mb_per_s_into_the_store_on_1000_cores": 1000.0 * per_core * last["store_mb"] / last["designs"],
+    }  # fmt: skip
