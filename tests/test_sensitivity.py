@@ -92,7 +92,6 @@ CONTROLS = (
     ("force", "pressure"),
     ("volume", "pressure"),
     ("volume", "force"),
-    ("length", "volume"),
 )
 
 

@@ -21,7 +21,7 @@ MUSCLE = mk.presets.paper()
 TEST = mk.Isometric(length="115 mm", pressure="0 to 1 bar", points=3)
 BEYOND = mk.Isometric(length="250 mm", pressure="0 to 1 bar", points=3)
 """Beyond full extension: nothing is solved, so it is quick."""
-SINGLE = ("length", "contraction", "force", "pressure", "volume", "energy", "energy_chamber", "error_estimate")
+SINGLE = ("length", "contraction", "force", "pressure", "volume", "energy", "energy_chamber")
 
 
 def status(data: xr.Dataset) -> list[str]:
@@ -32,9 +32,12 @@ def status(data: xr.Dataset) -> list[str]:
 def same(data: xr.Dataset, alone: mk.Result) -> None:
     """One design of a sweep against the run of the same muscle and test."""
     for name in SINGLE:
-        np.testing.assert_array_equal(data[name].values, alone.data[name].values)
-    np.testing.assert_array_equal(data.peak_fibre_tension, alone.data.fibre_tension.max("v"))
-    np.testing.assert_array_equal(data.largest_radius, alone.data.r.max("v"))
+        expected = alone.data[name].values
+        size = np.abs(expected).max()
+        np.testing.assert_allclose(data[name].values, expected, rtol=1e-9, atol=1e-9 * size, err_msg=name)
+    np.testing.assert_allclose(data.peak_fibre_tension, alone.data.fibre_tension.max("v"), rtol=1e-8)
+    np.testing.assert_allclose(data.largest_radius, alone.data.r.max("v"), rtol=1e-9)
+    np.testing.assert_allclose(data.error_estimate, alone.data.error_estimate, rtol=1e-2)
     words = data.verdict.attrs["flag_meanings"].split()[1:]
     assert [words[k] for k in data.verdict.values] == list(alone.verdict)
 
@@ -47,7 +50,9 @@ def test_grid_equals_single_runs() -> None:
     assert data["braid.angle"].attrs["units"] == "rad"
     np.testing.assert_allclose(data["braid.angle"], [np.radians(35.0), 0.65], rtol=1e-15)
     assert data["ends"].values.tolist() == ["clamped", "pinned"]
-    assert told == [*((k, 8) for k in range(9)), (8, 8)]
+    assert told == sorted(told)
+    assert told[0] == (0, 8)
+    assert told[-1] == (8, 8)
     for i, j, k in itertools.product(range(2), repeat=3):
         muscle = MUSCLE.replace("braid.angle", over["braid.angle"][i]).replace("ends", over["ends"][k])
         alone = mk.run(muscle, mk.Isometric(length=over["test.length"][j], pressure="0 to 1 bar", points=3))
@@ -95,6 +100,7 @@ def test_one_bad_design_spoils_no_other(monkeypatch: pytest.MonkeyPatch) -> None
         return single(muscle, test, **options)
 
     monkeypatch.setattr(chunk, "run", fragile)
+    monkeypatch.setattr(chunk, "solve_together", lambda asks, *_, **__: [None] * len(asks))
     data = mk.sweep(MUSCLE, TEST, over, workers=0)
     assert status(data) == [*["complete", "incomplete"] * 2, *["wrong input"] * 2, *["failed"] * 2]
     reasons = data.reason.values.ravel().tolist()

@@ -65,7 +65,7 @@ def test_a_store_holds_what_memory_does(whole: Path) -> None:
 
 def test_a_finished_sweep_is_not_solved_again(whole: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     before = content(whole)
-    monkeypatch.setattr(chunk, "run", lambda *_, **__: pytest.fail("solved again"))
+    monkeypatch.setattr(chunk, "solve_together", lambda *_, **__: pytest.fail("solved again"))
     again(whole)
     again(whole, workers=None)
     assert content(whole) == before
@@ -110,16 +110,16 @@ def test_half_written_and_failed_chunks_are_solved_again(whole: Path, tmp_path: 
 
 
 def test_interruption_keeps_what_is_finished(whole: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    store, single, left = tmp_path / "out.zarr", chunk.run, [7]
+    store, together, left = tmp_path / "out.zarr", chunk.solve_together, [2]
 
-    def interrupted(*args: object, **options: object) -> mk.Result:
+    def interrupted(*args: object, **options: object) -> object:
         left[0] -= 1
         if left[0] == 0:
             raise KeyboardInterrupt
-        return single(*args, **options)
+        return together(*args, **options)
 
     with monkeypatch.context() as patch:
-        patch.setattr(chunk, "run", interrupted)
+        patch.setattr(chunk, "solve_together", interrupted)
         with pytest.raises(KeyboardInterrupt):
             again(store)
     assert sorted(file.name for file in (store / "status").glob("c.*")) == ["c.0"]

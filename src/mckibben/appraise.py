@@ -4,13 +4,13 @@ Made to be mapped over muscles, like `solver.march`; the formulas are those of `
 """
 
 from functools import partial
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import attrs
 import jax
 import jax.numpy as jnp
 import numpy as np
-from jaxtyping import Array, Bool, Float
+from jaxtyping import Array, Bool, Float, Int
 
 from .discretise.line import Line, stretch
 from .kernel import jitted
@@ -132,10 +132,15 @@ def appraised(
     w: Float[Array, "batch n w"],
     select: Float[Array, "2 4"],
     targets: Float[Array, "batch n 2"],
+    count: Int[Array, ""],
 ) -> Appraised:
-    """The states of every muscle; the leaves have leading dimensions (n, batch)."""
+    """The first `count` states of every muscle; leaves have leading dimensions (n, batch) and are zero beyond."""
 
-    def states(at: tuple[Array, Array]) -> Appraised:
-        return jax.vmap(lambda d, b, w, target: appraise(line, law, d, b, w, select, target))(designs, b, *at)
+    def at(k: Any) -> Appraised:
+        one = partial(appraise, line, law, select=select)
+        return jax.vmap(lambda d, b, w, target: one(d, b, w, target=target))(designs, b, w[:, k], targets[:, k])
 
-    return jax.lax.map(states, (jnp.moveaxis(w, 1, 0), jnp.moveaxis(targets, 1, 0)))
+    blank = jax.tree.map(lambda s: jnp.zeros((w.shape[1], *s.shape), s.dtype), jax.eval_shape(at, 0))
+    return jax.lax.fori_loop(
+        0, count, lambda k, rows: jax.tree.map(lambda row, one: row.at[k].set(one), rows, at(k)), blank
+    )

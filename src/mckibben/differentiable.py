@@ -109,23 +109,26 @@ def _results(
     """Results at states that are known, as functions of the numbers."""
     unit = units(space, p)
     present = jnp.array([1.0, 1.0, 0.0, 0.0])
+    everything = jnp.sum(jnp.stack([jnp.asarray(leaf, float) for leaf in jax.tree.leaves((p, steps))]))
+    still = everything - jax.lax.stop_gradient(everything)
     found = []
     for step, near in zip(steps, states, strict=True):
         wanted, select = targets(step, present, unit), jnp.asarray(selection(step.controls))
         w = jax.vmap(lambda w, t, s=select: settle(space, w, p, b, s, t))(near, wanted)
         good = jnp.isfinite(w).all(axis=1)
         seen = jax.vmap(lambda w: observe(space, p, b, w))(jnp.where(good[:, None], w, 0.0))
-        seen = {name: _honest(values, good) for name, values in seen.items()}
+        seen = {name: _honest(values, good, still) for name, values in seen.items()}
         present = potential(space, p, b, w[-1])[1]
         found.append(seen)
     return {name: jnp.concatenate([seen[name] for seen in found]) for name in OBSERVED}
 
 
-def _honest(values: Array, good: Array) -> Array:
+def _honest(values: Array, good: Array, still: Array) -> Array:
     """NaN where there is no state, and derivatives there that are not finite.
 
     The values there are finite stand-ins, since one NaN would spoil every derivative of the others in reverse mode (as
-    0 NaN). What depends on them is made infinite instead, in two multiplications that keep zeros zero.
+    0 NaN). Instead `still`, which is zero and depends on every number, is multiplied twice by something large: what is
+    asked for becomes infinite, and zeros stay zero.
     """
-    beyond = jnp.where(good, 1.0, BEYOND)
-    return values * beyond * beyond + jnp.where(good, 0.0, jnp.nan)
+    beyond = jnp.where(good, 0.0, BEYOND)
+    return jnp.where(good, values, jnp.nan) + still * beyond * beyond

@@ -22,6 +22,7 @@ from .kernel import jitted
 from .model.chamber import law_of
 from .model.parameters import Law, Parameters, numbers
 from .solver.equilibrium import NAMES, Held
+from .solver.follow import padded
 from .solver.lockstep import MOST, Design, batch_size, design
 from .solver.march import march
 from .solver.placement import crowdings
@@ -185,12 +186,14 @@ def _on(asks: list[Ask], b: np.ndarray, line: Line, tolerance: float) -> list[Cu
     targets = np.where(turned[:, None, None], targets[:, ::-1], targets)
     rest = np.tile([1.0 if held[0] == "length" else 0.0, 0.0], (size, 1))
     select = Held(held, (0.0, 0.0)).select()
-    path = march(line, law, d, select, rest, targets, np.asarray(n))
-    good = np.asarray(path.reached) & np.asarray(path.rows.good).all(axis=1)
+    targets, count = np.moveaxis(padded(np.moveaxis(targets, 1, 0)), 0, 1), np.asarray(n)  # few lengths are compiled
+    path = march(line, law, d, select, rest, targets, count)
+    good = np.asarray(path.reached) & np.asarray(path.rows.good)[:, :n].all(axis=1)
     w, close = path.rows.w, 1e-2 * np.sqrt(tolerance)
     for _ in range(POLISH):
-        seen = jax.tree.map(np.asarray, appraised(line, law, d, b, w, select, targets))
-        w = jnp.moveaxis(jnp.asarray(seen.w), 0, 1)
+        found = appraised(line, law, d, b, w, select, targets, count)
+        w = jnp.moveaxis(found.w, 0, 1)
+        seen = jax.tree.map(lambda leaf: np.asarray(leaf)[:n], found)
         settled = (seen.change <= close).all(axis=0)
         if settled[good].all():
             break

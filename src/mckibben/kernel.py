@@ -21,6 +21,11 @@ from . import kept
 
 OPTIONS: dict[str, Any] = {"xla_cpu_use_fusion_emitters": False}
 """For repeated use: with the former emitters of loops XLA compiles in two thirds of the time, to faster code."""
+ALIKE: dict[str, Any] = OPTIONS | {
+    "xla_cpu_multi_thread_eigen": False,
+    "xla_disable_hlo_passes": "cpu-parallel-task-assigner",
+}
+"""For code that must give the same bits on one core and on many: no work is divided among threads."""
 QUICK: dict[str, Any] = OPTIONS | {"xla_backend_optimization_level": 0}
 """For a single use: half the time to compile again, three times the time to run."""
 
@@ -218,11 +223,11 @@ def kernel(function: Callable[..., Any]) -> Kernel:
 
 
 def jitted(function: Callable[..., Any], **settings: Any) -> Callable[..., Any]:
-    """`jax.jit` with the options for repeated use, which depend on the device: looked up when first called."""
+    """`jax.jit` for the same bits on any number of cores. What the device takes is looked up at the first call."""
 
     @functools.cache
     def made() -> Any:
-        return jax.jit(function, compiler_options=_known(OPTIONS), **settings)
+        return jax.jit(function, compiler_options=_known(ALIKE), **settings)
 
     @functools.wraps(function)
     def call(*args: Any, **named: Any) -> Any:
