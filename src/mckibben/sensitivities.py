@@ -1,12 +1,16 @@
 """What `sensitivity()` gives: how much each number matters to each result at one state. It computes nothing."""
 
-from typing import Any
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
 
 import attrs
 import numpy as np
-import xarray as xr
 
 from .spec import Muscle, Test
+
+if TYPE_CHECKING:
+    import xarray as xr
 
 ANGLES = "angles are measured from the parallels, and so is a per cent of one"
 
@@ -37,6 +41,8 @@ def sensitivities(
         ),
         "absolute": (dims, absolute, {"long_name": "derivative, SI unit of the result over that of the number"}),
     }
+    import xarray as xr  # here, because it takes half a second to import
+
     return xr.Dataset(variables, coords, about)
 
 
