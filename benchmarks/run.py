@@ -12,9 +12,11 @@ from typing import Any
 import batch
 import command
 import curve
+import numpy as np
 import others
 import peer
 import scaling
+from matplotlib.ticker import NullFormatter
 from timing import machine
 
 from mckibben.app import cache
@@ -72,10 +74,10 @@ def show_growth(growth: dict[str, Any], cluster: dict[str, float]) -> None:
     print("\n| muscles in step | time per curve |\n|---|---|")
     for row in growth["together"]:
         print(f"| {row['muscles']} | {written(row['least_s'])} |")
-    print("\n| designs | workers | time | designs/s | singly | client memory | largest worker | store |")
-    print("|---|---|---|---|---|---|---|---|")
+    print("\n| designs | workers | time | designs/s | singly | memory of the client | store |")
+    print("|---|---|---|---|---|---|---|")
     for row in growth["sweeps"]:
-        sizes = f"{row['client_mb']:.0f} MB | {row['worker_mb']:.0f} MB | {row['store_mb']:.0f} MB"
+        sizes = f"{row['client_mb']:.0f} MB | {row['store_mb']:.0f} MB"
         share = f"{100.0 * row['single']:.1f} %"
         head = f"| {row['designs']} | {row['workers']} | {written(row['median_s'])}"
         print(f"{head} | {row['designs_per_s']:.0f} | {share} | {sizes} |")
@@ -115,7 +117,7 @@ def picture(rows: list[dict[str, Any]]) -> None:
 
 def picture_growth(growth: dict[str, Any]) -> None:
     """Time against unknowns, states, muscles in step, and designs."""
-    figure = style.new_figure(style.PAGE, 4.6)
+    figure = style.new_figure(style.PAGE, 4.8)
     panels = figure.subplots(2, 2)
     for axes, rows, name, label, per in (
         (panels[0, 0], growth["unknowns"], "unknowns", "Unknowns (21 states)", 1e3),
@@ -132,6 +134,12 @@ def picture_growth(growth: dict[str, Any]) -> None:
     panels[1, 1].set(xscale="log", yscale="log", xlabel="Designs in a sweep (21 states, 1e-4)", ylabel="Time (s)")
     panels[1, 1].legend(frameon=False, fontsize=style.TICK)
     style.tidy(panels[1, 1])
+    for axes in panels.flat:
+        for axis in (axes.xaxis, axes.yaxis):
+            axis.set_minor_formatter(NullFormatter())
+        low, high = axes.get_ylim()
+        axes.set_ylim(10.0 ** np.floor(np.log10(low)), 10.0 ** np.ceil(np.log10(high)))
+    style.note(figure, "One machine, one run. A sweep's time includes the start of its workers and what they compile.")
     style.save(figure, OUT / "scaling", ("png",))
 
 
