@@ -12,7 +12,7 @@ from typing import Any
 import jax
 import numpy as np
 from curve import EXACT, MUSCLE, error
-from timing import timed
+from timing import once, timed
 
 import mckibben as mk
 from mckibben import fleet
@@ -76,13 +76,14 @@ def together(function: Any, calls: list[tuple[Any, ...]], threads: int) -> Any:
 def measure() -> list[dict[str, Any]]:
     """Rows with curves per second."""
     some = asks()
-    calls = captured(some, UNKNOWNS, TOLERANCE)
+    cold, calls = once(lambda: captured(some[:1], UNKNOWNS, TOLERANCE)), captured(some, UNKNOWNS, TOLERANCE)
     paths, states = [call[0] for call in calls], [call[1] for call in calls]
     off = accuracy(some)
     rows = []
     for name, function, given in (("solving", march, paths), ("appraising", appraised, states)):
         for threads in (1, THREADS):
             times = timed(lambda function=function, given=given, threads=threads: together(function, given, threads), 5)
+            times["cold_s"] = cold[0]["median_s"]  # of one batch, solved and appraised: both compile
             rows.append(row(f"512 curves, {name}, {threads} thread{'s' * (threads > 1)}", times, off))
     times = timed(lambda: mk.sweep(MUSCLE, TEST, OVER, tolerance=TOLERANCE, workers=0), 3)
     rows.append(row("512 curves, mk.sweep in full, one process", times, off))

@@ -62,18 +62,19 @@ def following(basis: Line | Spline, tolerance: float, exact: np.ndarray, name: s
     def call() -> Any:
         return jax.block_until_ready(follow(on.space, on.p, on.b, w, select, targets, count, close))
 
+    times = timed(call, 15)
     track = call()
     assert int(track.good) == len(PATH)
     forces = np.asarray(track.w[: len(PATH), -2]) * on.load_unit[1]
-    return {"name": name, "states": len(PATH), "error": error(forces, exact), **timed(call, 15)}
+    return {"name": name, "states": len(PATH), "error": error(forces, exact), **times}
 
 
 def searching(basis: Line | Spline, tolerance: float, exact: np.ndarray, name: str) -> dict[str, Any]:
     """The whole path: the first state sought, then following, and the robust search where that stops."""
     on = problem(basis)
+    times = timed(lambda: trace(on, PATH, tolerance=tolerance), 5)
     track = trace(on, PATH, tolerance=tolerance)
     assert track.reached == len(PATH)
-    times = timed(lambda: trace(on, PATH, tolerance=tolerance), 5)
     return {"name": name, "states": len(PATH), "error": error(track.loads[:, 1] * on.load_unit[1], exact), **times}
 
 

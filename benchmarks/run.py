@@ -19,7 +19,6 @@ import scaling
 from matplotlib.ticker import NullFormatter
 from timing import machine
 
-from mckibben.app import cache
 from mckibben.view import style
 
 OUT = Path(__file__).parent.parent / "out"
@@ -28,7 +27,6 @@ OUT = Path(__file__).parent.parent / "out"
 def main() -> None:
     """Everything, in some minutes."""
     about = machine()
-    cache.use()  # what an earlier run compiled is not compiled again: it is not part of any time but the commands'
     exact = curve.reference()
     rows = curve.measure(exact) + batch.measure() + curve.measure_others(exact)
     rows += others.measure(exact) + peer.measure(exact) + command.measure()
@@ -52,15 +50,17 @@ def main() -> None:
 
 def show(rows: list[dict[str, Any]]) -> None:
     """The table, as Markdown."""
-    print("| what | states | time | processor time | ratio | error of the force |")
-    print("|---|---|---|---|---|---|")
+    print("| what | states | cold | time | processor time | ratio | error of the force |")
+    print("|---|---|---|---|---|---|---|")
     for row in rows:
         off = "" if row["error"] is None else f"{row['error']:.1e}"
         times = f"{written(row['median_s'])} | {written(row['processor_s'])} | {row['ratio']:.2g}"
-        print(f"| {row['name']} | {row['states']} | {times} | {off} |")
+        cold = written(row["cold_s"]) if "cold_s" in row else ""
+        print(f"| {row['name']} | {row['states']} | {cold} | {times} | {off} |")
     for row in rows:
         if "curves_per_s" in row:
             print(f"{row['name']}: {row['curves_per_s']:.0f} curves/s")
+    print("cold: the first call in this process, which compiles what no row above needed")
     print("time: median on the clock; processor time: of all threads, which other work on the machine disturbs less")
     print("ratio: processor time per state over that of following alone with 24 unknowns, in this run")
     print(f"error: largest, over the largest force of the curve, against {curve.EXACT} unknowns")
