@@ -35,7 +35,7 @@ def batch_size(unknowns: int) -> int:
     """How many muscles advance in step: a power of two."""
     if jax.default_backend() != "cpu":
         return MANY
-    return int(min(MOST, 2 ** np.floor(np.log2(0.99 * WORK / (unknowns**3 / 3.0)))))
+    return int(np.clip(2 ** np.floor(np.log2(0.99 * WORK / (unknowns**3 / 3.0))), 1, MOST))
 
 
 class Constants(NamedTuple):
