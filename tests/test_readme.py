@@ -67,7 +67,7 @@ def test_commands_of_the_readme_run(tmp_path: Path, monkeypatch: pytest.MonkeyPa
         if words[0] not in TOO_LONG:
             done = CliRunner().invoke(app, words)
             assert done.exit_code == 0, (words, done.output)
-    assert set(called) == {"check", "run", "plot", "info", "presets", "reproduce"}
+    assert set(called) == {"check", "run", "plot", "info", "presets", "reproduce", "sensitivity"}
     assert (tmp_path / "force.png").read_bytes().startswith(b"\x89PNG")
 
 
