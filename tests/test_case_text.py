@@ -7,6 +7,7 @@ import tomllib
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from texts import CASE
 
 from mckibben import presets, spec
 from mckibben.files.case import read_case
@@ -14,25 +15,7 @@ from mckibben.spec import SpecError
 from mckibben.spec.text import Case, apply_overrides, from_mapping, to_mapping, to_toml
 
 PROPERTY = settings(max_examples=50, deadline=None, derandomize=True, database=None)
-TEXT = """
-[muscle]
-ends = "clamped"
-[muscle.braid]
-radius = "12.5 mm"
-length = "85 mm"
-angle = "37 deg"
-fibres = 56
-fibre = { diameter = "0.25 mm", E = "3 GPa", nu = 0.4 }
-[muscle.chamber]
-thickness = "1 mm"
-law = { name = "mooney-rivlin", c1 = "8.5 kPa", c2 = "0 Pa" }
-[test]
-kind = "isometric"
-length = "115 mm"
-pressure = "0 to 1 bar"
-points = 21
-"""
-GOOD = tomllib.loads(TEXT)
+GOOD = tomllib.loads(CASE)
 
 
 def test_the_file_of_the_design():
@@ -318,7 +301,7 @@ def test_a_custom_law_is_not_written_silently():
 
 def test_read_case(tmp_path):
     path = tmp_path / "case.toml"
-    path.write_text(TEXT, encoding="utf-8")
+    path.write_text(CASE, encoding="utf-8")
     assert read_case(path) == from_mapping(GOOD)
     assert read_case(str(path), ["ends=free"]).muscle.ends == "free"
 

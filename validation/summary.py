@@ -6,7 +6,7 @@ from typing import Any
 import numpy as np
 from environment import OUT, ROOT
 from pictures import draw_errors, draw_map
-from random_muscles import is_reached, is_stable
+from random_muscles import is_reached, is_stable, is_told
 from sample import SEED, SHARES
 
 TOLERANCE = 1e-10
@@ -56,6 +56,10 @@ def missed(rows: list[Row], word: str) -> list[Row]:
 NOBODY: Row = {"worth": {}}
 
 
+NAMED = """A state that gives way to one side, to no admissible shape, holds nothing. Where only other starts find such
+a state the call says inadmissible and names it, as the reference cases do (T403c: "no admissible state")."""
+
+
 def table(head: list[str], lines: list[list[Any]]) -> list[str]:
     """Rows of a Markdown table, after an empty line."""
     cells = [head, ["---"] * len(head), *lines]
@@ -71,22 +75,17 @@ def _reach(rows: list[Row]) -> list[str]:
     for kind in (*SHARES, "all"):
         of = [row for row in rows if kind in ("all", row["case"]["kind"])]
         lines.append([kind, len(of), *(sum(row["found"]["verdict"] == word for row in of) for word in verdicts)])
+    told = sum(is_told(row) for row in loose)
     said = [
-        [
-            "stable in all modes, as given or as what it tips to",
-            stable,
-            len(strict),
-            f"{stable / (stable + len(strict)):.2%}",
-        ],
-        [
-            "stable in the symmetric modes, given or told of",
-            len(good),
-            len(loose),
-            f"{len(good) / (len(good) + len(loose)):.2%}",
-        ],
+        [name, reached, rest, f"{reached / (reached + rest):.2%}"]
+        for name, reached, rest in (
+            ("stable in all modes, as given or as what it tips to", stable, len(strict)),
+            ("stable in the symmetric modes, as given", len(good), len(loose)),
+            ("... or named in the reason as unstable, without its numbers", len(good) + told, len(loose) - told),
+        )
     ]
     head = ["state", "reached by the default call", "reached only by a judge", "share"]
-    note = ["", f"{unasked} targets were not yet judged."] if unasked else []
+    note = ["", NAMED, *(["", f"{unasked} targets were not yet judged."] if unasked else [])]
     return ["", "## Reach", *table(head, said), *table(["target", "count", *verdicts], lines), *note]
 
 

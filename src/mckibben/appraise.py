@@ -36,8 +36,6 @@ from .solver.lockstep import (
 )
 from .solver.lockstep import stiffness as tangent
 
-ENERGIES = ("bending_1", "bending_2", "twist", "chamber")
-"""Order of `energies`."""
 HALF = NODES // 2 + 1
 """Output points of one half, the end and the middle included."""
 

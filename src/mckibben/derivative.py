@@ -17,7 +17,8 @@ from .model.parameters import Number, parameters
 from .observe import OBSERVED, observe
 from .report import Part, versions
 from .sensitivities import ANGLES, Sensitivity, sensitivities
-from .solver.approach import selection, targets, units
+from .solver.approach import targets, units
+from .solver.equilibrium import selection
 from .solver.implicit import potential, settle
 from .solver.problem import Problem, Space
 from .spec import Muscle, SpecError, Step, Test, numbers

@@ -12,7 +12,8 @@ from .experiment import Bench, solved
 from .model.chamber import law_of
 from .model.parameters import Number, Parameters, parameters
 from .observe import OBSERVED, observe
-from .solver.approach import approach, selection, targets, units
+from .solver.approach import approach, targets, units
+from .solver.equilibrium import selection
 from .solver.implicit import potential, settle
 from .solver.placement import crowdings
 from .solver.problem import Space

@@ -15,13 +15,14 @@ import jax
 import jax.numpy as jnp
 import numpy as np
 
-from .appraise import ENERGIES, appraised
+from .appraise import appraised
 from .discretise.line import Line
 from .experiment import corners, sizes_for
 from .kernel import jitted
 from .model.chamber import law_of
 from .model.parameters import Law, Parameters, numbers
-from .solver.equilibrium import NAMES, Held
+from .recover import ENERGIES
+from .solver.equilibrium import NAMES, selection
 from .solver.follow import padded
 from .solver.lockstep import MOST, Design, batch_size, design
 from .solver.march import march
@@ -185,7 +186,7 @@ def _on(asks: list[Ask], b: np.ndarray, line: Line, tolerance: float) -> list[Cu
     turned = np.abs(targets[:, -1, 1]) > np.abs(targets[:, 0, 1])
     targets = np.where(turned[:, None, None], targets[:, ::-1], targets)
     rest = np.tile([1.0 if held[0] == "length" else 0.0, 0.0], (size, 1))
-    select = Held(held, (0.0, 0.0)).select()
+    select = selection(held)
     targets, count = np.moveaxis(padded(np.moveaxis(targets, 1, 0)), 0, 1), np.asarray(n)  # few lengths are compiled
     path = march(line, law, d, select, rest, targets, count)
     good = np.asarray(path.reached) & np.asarray(path.rows.good)[:, :n].all(axis=1)

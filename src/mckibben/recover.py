@@ -31,6 +31,8 @@ from .model.kinematics import (
 from .model.parameters import Law, Number, Parameters
 from .solver.problem import Problem, Space
 
+ENERGIES = ("bending_1", "bending_2", "twist", "chamber")
+"""The parts of the stored energy, in the order in which they are kept."""
 NODES = 129
 """Output points along the length, crowded at the fittings like the mesh, where the fields vary most."""
 
@@ -148,10 +150,7 @@ def recover(problem: Problem, u: np.ndarray, loads: np.ndarray) -> Recovered:
         costate = integral - basis.integral(p, b, slope, 3)[:, 1:2]
     found = {k: np.asarray(f) for k, f in fields(law, p, theta, psi, kappa, costate, F, P).items()}
     q = problem.mesh.v.size
-    energies = {
-        name: (found[f"density_{name}"][:, :q] @ problem.mesh.weights)[:n]
-        for name in ("bending_1", "bending_2", "twist", "chamber")
-    }
+    energies = {name: (found[f"density_{name}"][:, :q] @ problem.mesh.weights)[:n] for name in ENERGIES}
     conserved, size = found.pop("conserved"), found.pop("conserved_size").max(axis=1)
     mean = conserved.mean(axis=1, keepdims=True)
     weight = np.concatenate([problem.mesh.weights / problem.mesh.weights.sum(), np.zeros(NODES)])

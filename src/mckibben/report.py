@@ -9,7 +9,7 @@ import numpy as np
 
 from .caution import after
 from .judge import Judgement
-from .recover import NODES
+from .recover import ENERGIES, NODES
 from .result import FIELDS, Result, Table, about
 from .solver.path import INTERRUPTED
 from .spec import Muscle, Test
@@ -17,7 +17,6 @@ from .survey import Survey
 from .verdict import Shape, Verdict
 from .work import work
 
-ENERGIES = ("bending_1", "bending_2", "twist", "chamber")
 NUMBERS = (
     "length", "contraction", "force", "pressure", "volume", *(f"energy_{name}" for name in ENERGIES), "energy",
     "residual", "error_estimate", "coefficient_tail", "conserved_variation",

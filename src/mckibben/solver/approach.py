@@ -10,7 +10,7 @@ from jaxtyping import Array, Float
 from ..model.energy import scales
 from ..model.parameters import Number, Parameters
 from ..spec import Step
-from .equilibrium import NAMES
+from .equilibrium import NAMES, selection
 from .follow import follow
 from .problem import Space
 
@@ -24,11 +24,6 @@ def units(space: Space, p: Parameters) -> Float[Array, "4"]:
     """Units of `NAMES`: length, volume, force, pressure."""
     energy, length, volume, _ = scales(p, space.law)
     return jnp.stack([length, volume, energy / length, energy / volume])
-
-
-def selection(names: tuple[str, ...]) -> np.ndarray:
-    """(2, 4): which of `NAMES` each of the two conditions holds."""
-    return np.array([[float(name == held) for name in NAMES] for held in names])
 
 
 def targets(step: Step, present: Float[Array, "4"], unit: Float[Array, "4"]) -> Float[Array, "n 2"]:

@@ -11,6 +11,11 @@ NAMES = ("length", "volume", "force", "pressure")
 """What a lab can hold: two of these at a time."""
 
 
+def selection(names: tuple[str, ...]) -> np.ndarray:
+    """(2, 4): which of `NAMES` each of the two conditions holds."""
+    return np.array([[float(name == held) for name in NAMES] for held in names])
+
+
 @attrs.frozen
 class Held:
     """Two of length [m], volume [m^3], force [N], pressure [Pa], held at values."""
@@ -30,8 +35,8 @@ class Held:
         return dict(zip(self.names, self.values, strict=True)).get(name, default)
 
     def select(self) -> np.ndarray:
-        """(2, 4): which of `NAMES` each of the two conditions holds."""
-        return np.array([[float(name == held) for name in NAMES] for held in self.names])
+        """As `selection`."""
+        return selection(self.names)
 
     def targets(self, problem: Problem) -> np.ndarray:
         """The two values, dimensionless."""
