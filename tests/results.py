@@ -2,8 +2,9 @@
 
 import numpy as np
 
-from mckibben.result import FIELDS, STEP, Result, about, dataset
+from mckibben.result import Result, about, dataset
 from mckibben.spec import Muscle, Test
+from mckibben.variables import FIELDS, STEP
 
 
 def made(muscle: Muscle, test: Test, reached: int) -> Result:

@@ -18,8 +18,9 @@ from results import made
 
 import mckibben as mk
 from mckibben.files import atomic
-from mckibben.result import FIELDS, VARIABLES, Result
+from mckibben.result import Result
 from mckibben.spec.text import muscle_from_mapping, test_from_mapping
+from mckibben.variables import FIELDS, VARIABLES
 
 PAPER = mk.presets.paper()
 CURVE = mk.Isobaric(pressure="1 bar", length="118 mm to 130 mm", points=5)

@@ -7,13 +7,12 @@ from functools import partial
 from typing import Any, NamedTuple
 
 import attrs
-import jax
-import jax.numpy as jnp
 import numpy as np
-from jaxtyping import Array, Bool, Float, Int
+from jaxtyping import Bool, Float, Int
 
 from .discretise.line import Line, stretch
 from .kernel import jitted
+from .lazy import Array, jax, jnp
 from .model.angle import Known, slope
 from .model.chamber import chamber_density
 from .model.fibres import fibre_densities

@@ -2,10 +2,9 @@
 
 from typing import Any
 
-import jax
-import jax.numpy as jnp
 import numpy as np
 
+from .lazy import jax, jnp
 from .model.chamber import law_of
 from .model.cylinder import cylinder_angle, cylinder_force
 from .model.kinematics import radius, stretches

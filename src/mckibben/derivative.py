@@ -5,14 +5,12 @@ from functools import partial
 from typing import Any
 
 import attrs
-import jax
-import jax.numpy as jnp
 import numpy as np
-from jaxtyping import Array
 
 from .differentiable import differentiable
 from .experiment import Bench, solved
 from .judge import Judgement
+from .lazy import Array, jax, jnp
 from .model.parameters import Number, parameters
 from .observe import OBSERVED, observe
 from .report import Part, versions

@@ -3,12 +3,11 @@
 from functools import partial
 from typing import Any
 
-import jax
-import jax.numpy as jnp
-from jaxtyping import Array, Float
+from jaxtyping import Float
 
 from .discretise.line import Line
 from .experiment import Bench, solved
+from .lazy import Array, jax, jnp
 from .model.chamber import law_of
 from .model.parameters import Number, Parameters, parameters
 from .observe import OBSERVED, observe

@@ -11,14 +11,13 @@ from itertools import groupby
 from typing import Any, TypeVar
 
 import attrs
-import jax
-import jax.numpy as jnp
 import numpy as np
 
 from .appraise import appraised
 from .discretise.line import Line
 from .experiment import corners, sizes_for
 from .kernel import jitted
+from .lazy import jax, jnp
 from .model.chamber import law_of
 from .model.parameters import Law, Parameters, numbers
 from .recover import ENERGIES

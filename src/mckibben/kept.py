@@ -15,15 +15,17 @@ import sys
 import tempfile
 from collections.abc import Callable
 from contextlib import suppress
-from functools import cache, lru_cache
+from functools import cache
 from importlib.metadata import version
 from pathlib import Path
 from typing import Any
 
 import attrs
 
+from .lazy import changed_settings
+
 SUFFIX = ".kernel"
-_MAGIC = b"mckibben kernel 1\n"
+_MAGIC = b"mckibben kernel 2\n"
 _PACKAGE = __name__.partition(".")[0]
 _PASSING = ("jax_compilation_cache", "jax_persistent_cache", "jax_enable_compilation_cache", "jax_log", "jax_dump",
             "jax_explain", "jax_pprint", "jax_traceback", "jax_compiler_detailed")  # fmt: skip
@@ -59,15 +61,16 @@ def source() -> str:
     return digest.hexdigest()
 
 
-@lru_cache(maxsize=8)
-def surroundings(settings: tuple[tuple[str, str], ...]) -> str:
-    """Versions, processor and settings, as text."""
-    import jax
+@cache
+def surroundings() -> str:
+    """Versions, processor and what the environment says to JAX and XLA, as text."""
+    said = sorted((k, v) for k, v in os.environ.items() if k.startswith(("JAX_", "XLA_")) and not _passing(k))
+    return repr((version("jax"), version("jaxlib"), sys.version, platform.platform(), processor(), said))
 
-    device = jax.devices()[0]
-    flags = [(name, os.environ.get(name, "")) for name in ("XLA_FLAGS", "LIBTPU_INIT_ARGS")]
-    versions = (jax.__version__, version("jaxlib"), sys.version, platform.platform(), processor())
-    return repr((versions, device.platform, device.device_kind, len(jax.devices()), flags, settings))
+
+def _passing(setting: str) -> bool:
+    """Whether a setting of JAX does not change what is compiled."""
+    return setting.lower().startswith(_PASSING)
 
 
 @cache
@@ -82,11 +85,8 @@ def processor() -> str:
 
 def key(name: str, static: Any, shapes: Any, options: dict[str, Any]) -> str:
     """Name of the file for a kernel on given static argument, shapes and types, compiled with given options."""
-    import jax
-
-    values = jax.config.values.items()
-    settings = tuple(sorted((k, repr(v)) for k, v in values if not k.startswith(_PASSING)))
-    said = (name, describe(static), repr(shapes), sorted(options.items()), source(), surroundings(settings))
+    settings = sorted((k, repr(v)) for k, v in changed_settings().items() if not _passing(k))
+    said = (name, describe(static), repr(shapes), sorted(options.items()), source(), surroundings(), settings)
     return hashlib.sha256(repr(said).encode()).hexdigest()[:40]
 
 
@@ -104,9 +104,6 @@ def private(folder: Path) -> bool:
 
 def read(file: Path) -> Callable[..., Any] | None:
     """The executable in a file; None if there is none, or none that is whole."""
-    import jax
-    from jax.experimental import serialize_executable
-
     try:
         content = file.read_bytes()
     except OSError:
@@ -115,30 +112,21 @@ def read(file: Path) -> Callable[..., Any] | None:
     body = memoryview(content)[head:]
     if content[:head] != _MAGIC + hashlib.sha256(body).digest():
         return None
-    _find_lapack()
+    from . import native
+
     try:
-        serialized, in_tree, out_tree = pickle.loads(body)
-        devices = jax.devices()[:1]
-        return serialize_executable.deserialize_and_load(serialized, in_tree, out_tree, execution_devices=devices)
+        return native.Executable(*pickle.loads(body))
     except Exception:  # whatever another build of JAX does not like: it is compiled anew
         return None
 
 
-@cache
-def _find_lapack() -> None:
-    """Have JAX look up LAPACK, which it does on lowering what needs it; executables that call it would crash."""
-    import jax
-
-    jax.jit(jax.numpy.linalg.cholesky).lower(jax.ShapeDtypeStruct((1, 1), float))
-
-
 def write(file: Path, compiled: Any) -> None:
     """Keep an executable, whole or not at all; where that cannot be done nothing happens."""
-    from jax.experimental import serialize_executable
+    from . import native
 
     temporary: str | None = None
     try:
-        body = pickle.dumps(serialize_executable.serialize(compiled))
+        body = pickle.dumps(native.serialize(compiled))
         handle, temporary = tempfile.mkstemp(prefix=".", suffix=".tmp", dir=file.parent)
         with os.fdopen(handle, "wb") as stream:
             stream.write(_MAGIC + hashlib.sha256(body).digest() + body)

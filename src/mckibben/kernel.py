@@ -14,10 +14,10 @@ from pathlib import Path
 from typing import Any, NamedTuple
 
 import attrs
-import jax
 import numpy as np
 
-from . import kept
+from . import kept, native
+from .lazy import imported, jax
 
 OPTIONS: dict[str, Any] = {"xla_cpu_use_fusion_emitters": False}
 """For repeated use: with the former emitters of loops XLA compiles in two thirds of the time, to faster code."""
@@ -61,7 +61,7 @@ _place: _Place | None = None
 def keeping(folder: Path) -> Iterator[None]:
     """Keep kernels in a folder, if nobody else can write to it and they run on the CPU."""
     global _place
-    if not (jax.default_backend() == "cpu" and kept.private(folder)):
+    if not (native.alone() and kept.private(folder)):
         yield
         return
     before = _place
@@ -106,9 +106,12 @@ class _Kind(NamedTuple):
     tree: Any
     shapes: tuple[Any, ...]
 
-
-def _shapes(leaves: list[Any]) -> tuple[Any, ...]:
-    return tuple((np.shape(leaf), leaf.dtype if hasattr(leaf, "dtype") else np.dtype(type(leaf))) for leaf in leaves)
+    @classmethod
+    def of(cls, folder: Path, static: Any, arrays: Any) -> "_Kind":
+        """By the arrays' shapes and types."""
+        leaves, tree = native.flatten(arrays)
+        types = (leaf.dtype if hasattr(leaf, "dtype") else np.dtype(type(leaf)) for leaf in leaves)
+        return cls(folder, static, tree, tuple(zip(map(np.shape, leaves), types, strict=True)))
 
 
 class Kernel:
@@ -118,9 +121,13 @@ class Kernel:
         functools.update_wrapper(self, function)
         self._name = f"{function.__module__}.{function.__qualname__}"
         self._function = function
-        self._inside: Any = jax.jit(function, static_argnums=0)  # within other compiled functions
         self._kept: dict[Any, Future[Any]] = {}
         self._lock = threading.Lock()
+
+    @functools.cached_property
+    def _inside(self) -> Any:
+        """Within other compiled functions."""
+        return jax.jit(self._function, static_argnums=0)
 
     @functools.cached_property
     def _jit(self) -> Any:
@@ -135,25 +142,23 @@ class Kernel:
 
     def __call__(self, *args: Any) -> Any:
         static, arrays = args[0], args[1:]
-        leaves, tree = jax.tree.flatten(arrays)
-        if any(isinstance(leaf, jax.core.Tracer) for leaf in leaves):
+        if imported() and any(isinstance(leaf, jax.core.Tracer) for leaf in jax.tree.leaves(arrays)):
             return self._inside(*args)
         if _place is None:
             return self._jit(*args)
-        kind = _Kind(_place.folder, static, tree, _shapes(leaves))
+        kind = _Kind.of(_place.folder, static, arrays)
         found = self._find(kind)
         if found is not None:
             try:
-                return jax.block_until_ready(found(*arrays))
-            except (TypeError, ValueError, jax.errors.JaxRuntimeError):  # read, but not what it should be
+                return found(*arrays)
+            except (TypeError, ValueError, RuntimeError):  # read, but not what it should be
                 self._drop(kind)
         return self._jit(*args)
 
     def prepare(self, static: Any, *arrays: Any) -> None:
         """Have the kernel read or compiled in the background, where kernels are kept; arrays count by shape alone."""
         if _place is not None:
-            leaves, tree = jax.tree.flatten(arrays)
-            _place.pool.submit(self._find, _Kind(_place.folder, static, tree, _shapes(leaves)))
+            _place.pool.submit(self._find, _Kind.of(_place.folder, static, arrays))
 
     def _find(self, kind: _Kind) -> Any:
         """The executable, made once and waited for by others; None where it cannot be kept."""
@@ -203,7 +208,7 @@ class Kernel:
 
         once.__name__ = f"{self._function.__name__}_{secrets.token_hex(4)}"
         arrays = jax.tree.unflatten(kind.tree, [jax.ShapeDtypeStruct(*shape) for shape in kind.shapes])
-        lowered = jax.jit(once, static_argnums=0).lower(kind.static, *arrays)
+        lowered = jax.jit(once, static_argnums=0, keep_unused=True).lower(kind.static, *arrays)
         with _apart:
             return lowered.compile(compiler_options=_known(QUICK))
 

@@ -1,20 +1,19 @@
 """What a lab reads off one state, as a differentiable function of the muscle's numbers and the state's unknowns."""
 
-import jax
-import jax.numpy as jnp
 import numpy as np
-from jaxtyping import Array, Float
+from jaxtyping import Float
 
 from .discretise.line import Line
 from .discretise.mesh import values
+from .lazy import Array, jax, jnp
 from .model.chamber import chamber_density
 from .model.energy import scales
 from .model.fibres import fibre_densities
 from .model.kinematics import height_rate, radius, volume_rate
 from .model.parameters import Number, Parameters
 from .recover import NODES, tension
-from .result import STEP
 from .solver.problem import LENGTH, VOLUME, Space
+from .variables import STEP
 
 OBSERVED: dict[str, tuple[str, str]] = {
     name: STEP[name]

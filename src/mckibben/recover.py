@@ -10,12 +10,11 @@ the costate of theta:
 """
 
 import attrs
-import jax
-import jax.numpy as jnp
 import numpy as np
-from jaxtyping import Array, Float
+from jaxtyping import Float
 
 from .kernel import kernel
+from .lazy import Array, jax, jnp
 from .model.angle import cos, sin, slope
 from .model.chamber import chamber_density
 from .model.energy import stored

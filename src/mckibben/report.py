@@ -10,10 +10,11 @@ import numpy as np
 from .caution import after
 from .judge import Judgement
 from .recover import ENERGIES, NODES
-from .result import FIELDS, Result, Table, about
+from .result import Result, Table, about
 from .solver.path import INTERRUPTED
 from .spec import Muscle, Test
 from .survey import Survey
+from .variables import FIELDS
 from .verdict import Shape, Verdict
 from .work import work
 

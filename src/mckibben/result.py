@@ -1,6 +1,6 @@
 """The answer: an immutable value around an xarray Dataset. It computes nothing.
 
-Every variable is declared once in `VARIABLES`, with its unit and meaning; files, plots and the reference page read it.
+Its variables are declared in `variables`.
 """
 
 from __future__ import annotations
@@ -13,62 +13,11 @@ import numpy as np
 
 from .spec import Muscle, Test
 from .spec.text import to_toml
+from .variables import COORDINATES, STEP, VARIABLES, about_variable, dimensions
 from .verdict import Modes, Verdict
 
 if TYPE_CHECKING:
     import xarray as xr
-
-STEP: dict[str, tuple[str, str]] = {
-    "length": ("m", "distance between the fittings"),
-    "contraction": ("1", "contraction 1 - h/H0, positive when shorter"),
-    "force": ("N", "axial force, positive in tension"),
-    "pressure": ("Pa", "gauge pressure"),
-    "volume": ("m^3", "volume inside the braid"),
-    "energy_bending_1": ("J", "fibre energy, bending in the tangent plane"),
-    "energy_bending_2": ("J", "fibre energy, bending normal to the surface"),
-    "energy_twist": ("J", "fibre energy, twist"),
-    "energy_chamber": ("J", "energy of the chamber"),
-    "energy": ("J", "stored energy"),
-    "work": ("J", "work done on the muscle since the first state"),
-    "verdict": ("", "verdict"),
-    "reason": ("", "reason for the verdict"),
-    "shape": ("", "shape of the meridian"),
-    "converged": ("", "whether equilibrium was found"),
-    "iterations": ("1", "Newton systems solved"),
-    "residual": ("1", "imbalance over the size of its terms"),
-    "error_estimate": ("1", "estimated relative error of force and length"),
-    "coefficient_tail": ("1", "last coefficients over the largest"),
-    "conserved_variation": ("1", "relative variation of the conserved quantity along the length"),
-    "modes_length_control": ("1", "negative symmetric modes under length control"),
-    "modes_force_control": ("1", "negative symmetric modes under force control"),
-    "modes_antisymmetric": ("1", "negative antisymmetric modes (-1: not separated)"),
-    "protocol_step": ("1", "which step of the test a state belongs to"),
-}
-"""Variables with one value per state: unit and meaning."""
-
-FIELDS: dict[str, tuple[str, str]] = {
-    "theta": ("rad", "braid angle from the parallels"),
-    "psi": ("rad", "slope angle of the meridian"),
-    "r": ("m", "radius"),
-    "z": ("m", "axial position from the fixed fitting"),
-    "stretch_hoop": ("1", "hoop stretch of the chamber"),
-    "stretch_axial": ("1", "meridian stretch of the chamber"),
-    "stretch_thickness": ("1", "thickness stretch of the chamber"),
-    "u1": ("1/m", "fibre strain u1, geodesic curvature"),
-    "u2": ("1/m", "fibre strain u2, normal curvature"),
-    "u3": ("1/m", "fibre strain u3, twist"),
-    "density_bending_1": ("J/m", "fibre energy per unit v, bending in the tangent plane"),
-    "density_bending_2": ("J/m", "fibre energy per unit v, bending normal to the surface"),
-    "density_twist": ("J/m", "fibre energy per unit v, twist"),
-    "density_fibres": ("J/m", "fibre energy per unit v"),
-    "density_chamber": ("J/m", "energy of the chamber per unit v"),
-    "fibre_tension": ("N", "tension of one fibre"),
-    "share_mesh": ("1", "share of the axial load F + pi r^2 P carried by the mesh"),
-    "share_chamber": ("1", "share of the axial load F + pi r^2 P carried by the chamber"),
-}
-"""Variables along the material coordinate v: unit and meaning."""
-
-VARIABLES = STEP | FIELDS
 
 
 @attrs.frozen(eq=False)
@@ -80,6 +29,9 @@ class Table:
     v: np.ndarray  #: axial material coordinate (q) [m]
     attrs: dict[str, Any]
 
+    def __getitem__(self, name: str) -> np.ndarray:
+        return self.v if name == "v" else np.asarray((self.steps if name in STEP else self.fields)[name])
+
     def dataset(self) -> xr.Dataset:
         """The Dataset; its arrays are read-only."""
         return dataset(self.steps, self.fields, self.v, self.attrs)
@@ -89,18 +41,13 @@ def dataset(steps: dict[str, Any], fields: dict[str, np.ndarray], v: np.ndarray,
     """The Dataset of a result; every declared variable must be given."""
     import xarray as xr  # here, because not everybody who wants numbers wants to wait for it
 
+    values = steps | fields | {"step": np.arange(len(steps["length"])), "v": v}
     variables: dict[str, Any] = {}
-    for names, values, dims in ((STEP, steps, ("step",)), (FIELDS, fields, ("step", "v"))):
-        for name, (unit, meaning) in names.items():
-            array = np.asarray(values[name])
-            array.flags.writeable = False
-            variables[name] = (dims, array, {"long_name": meaning} | ({"units": unit} if unit else {}))
-    count = len(variables["length"][1])
-    coords = {
-        "step": ("step", np.arange(count), {"long_name": "state"}),
-        "v": ("v", v, {"units": "m", "long_name": "axial material coordinate"}),
-    }
-    return xr.Dataset(variables, coords, about)
+    for name in VARIABLES | COORDINATES:
+        array = np.asarray(values[name])
+        array.flags.writeable = False
+        variables[name] = (dimensions(name), array, about_variable(name))
+    return xr.Dataset(variables, attrs=about).set_coords(list(COORDINATES))
 
 
 @attrs.frozen(eq=False)
@@ -133,12 +80,10 @@ class Result:
         return len(self.column("length"))
 
     def column(self, name: str) -> np.ndarray:
-        """A variable as a plain read-only array: (states) or (states, points along the muscle)."""
-        if isinstance(self._given, Table):
-            values = np.asarray((self._given.steps if name in STEP else self._given.fields)[name])
-            values.flags.writeable = False
-            return values
-        return np.asarray(self._given[name].values)
+        """A variable as a plain read-only array: (states), (states, points along the muscle), or (points) for `v`."""
+        values = np.asarray(self._given[name])
+        values.flags.writeable = False
+        return values
 
     @property
     def force(self) -> np.ndarray:

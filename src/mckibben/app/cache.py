@@ -41,7 +41,7 @@ def use() -> Path | None:
     Settings that are in the environment stay as they are.
     """
     os.environ.setdefault("TF_CPP_MIN_LOG_LEVEL", "3")  # the compiler's own remarks; errors still raise
-    import jax
+    from mckibben.lazy import configure
 
     if "JAX_COMPILATION_CACHE_DIR" not in os.environ:
         place = folder()
@@ -53,10 +53,10 @@ def use() -> Path | None:
             return None
         if size(place)[1] > LIMIT:
             _clear(place)
-        jax.config.update("jax_compilation_cache_dir", str(place))
+        configure("jax_compilation_cache_dir", str(place))
     for name, value in (("min_compile_time_secs", 0), ("min_entry_size_bytes", -1)):
         if f"JAX_PERSISTENT_CACHE_{name.upper()}" not in os.environ:
-            jax.config.update(f"jax_persistent_cache_{name}", value)
+            configure(f"jax_persistent_cache_{name}", value)
     return folder()
 
 

@@ -9,8 +9,9 @@ from typing import Any
 from mckibben.app.console import COMPLETE, INCOMPLETE, INTERRUPTED, say, table
 from mckibben.app.fields import muscle_rows
 from mckibben.files.table import rows
-from mckibben.result import STEP, Result
+from mckibben.result import Result
 from mckibben.units import from_si
+from mckibben.variables import STEP
 from mckibben.verdict import Verdict
 
 __all__ = ["as_json", "exit_code", "show"]

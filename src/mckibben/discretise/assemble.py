@@ -10,11 +10,10 @@ a whole is never differentiated. For x = (theta, y), theta = lift + Theta u + C 
 from collections.abc import Callable
 from typing import NamedTuple
 
-import jax
-import jax.numpy as jnp
 import numpy as np
-from jaxtyping import Array, Float
+from jaxtyping import Float
 
+from ..lazy import Array, jax, jnp
 from ..model.parameters import Parameters
 from .mesh import Form, Mesh, values
 

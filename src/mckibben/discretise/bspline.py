@@ -8,11 +8,11 @@ from functools import lru_cache
 from typing import Any
 
 import attrs
-import jax.numpy as jnp
 import numpy as np
 from numpy.polynomial import legendre
 from numpy.typing import NDArray
 
+from ..lazy import jnp
 from ..model.parameters import Number, Parameters
 from .mesh import Form, Mesh
 

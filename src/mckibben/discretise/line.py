@@ -8,11 +8,11 @@ from functools import lru_cache
 from typing import Any, Literal, NamedTuple
 
 import attrs
-import jax.numpy as jnp
 import numpy as np
 from numpy.polynomial import legendre
 from numpy.typing import NDArray
 
+from ..lazy import jnp
 from ..model.kinematics import angle_rate
 from ..model.parameters import Number, Parameters, functions
 from .mesh import Form, Mesh

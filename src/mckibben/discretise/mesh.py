@@ -12,9 +12,9 @@ integral. A further field is one more row of Y; a free end is one more column of
 from collections.abc import Callable
 from typing import Any, NamedTuple
 
-import jax
-from jaxtyping import Array, Float
+from jaxtyping import Float
 
+from ..lazy import Array, jax, jnp
 from ..model.parameters import Number, Parameters
 
 
@@ -40,8 +40,6 @@ class Form(NamedTuple):
 
 def values(mesh: Mesh, form: Form, u: Float[Array, " m"], p: Parameters) -> Float[Array, "n d"]:
     """x = (theta, y) at the points."""
-    import jax.numpy as jnp
-
     y = mesh.fields @ u
     theta = mesh.lift + mesh.angle @ u + mesh.cumulate @ jax.vmap(form.rate, (0, None))(y, p)
     return jnp.concatenate([theta[:, None], y], axis=1)

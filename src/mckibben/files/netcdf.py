@@ -1,4 +1,7 @@
-"""Results as NetCDF-4 files, through xarray and h5netcdf. What is loaded equals what was saved, number by number."""
+"""Results as NetCDF-4 files, through h5netcdf. What is loaded equals what was saved, number by number.
+
+They are laid out as xarray would, and read by it. To write them takes no xarray, which would take as long as the test.
+"""
 
 from __future__ import annotations
 
@@ -6,17 +9,21 @@ import io
 import tomllib
 from os import PathLike
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
+import h5netcdf
 import h5py
 import numpy as np
-import xarray as xr
 
 from mckibben.files import atomic
-from mckibben.result import FIELDS, STEP, VARIABLES, Result
+from mckibben.result import Result
 from mckibben.spec import Muscle, Test
 from mckibben.spec.errors import SpecError
 from mckibben.spec.text import muscle_from_mapping, test_from_mapping
+from mckibben.variables import COORDINATES, FIELDS, VARIABLES, about_variable, dimensions
+
+if TYPE_CHECKING:
+    import xarray as xr
 
 __all__ = ["load", "save"]
 
@@ -27,7 +34,28 @@ _BROKEN = (OSError, KeyError, ValueError, TypeError, RuntimeError, AttributeErro
 def save(result: Result, path: str | PathLike[str], force: bool = False) -> Path:
     """Write a result as a NetCDF-4 file; SpecError if the file exists (without `force`) or cannot be written."""
     atomic.check_target(path, force)
-    return atomic.write(path, memoryview(result.data.to_netcdf(engine="h5netcdf")), force)
+    content = io.BytesIO()
+    with h5netcdf.File(content, "w") as file:
+        file.dimensions = {"step": len(result), "v": len(result.column("v"))}
+        _put(file, "step", np.arange(len(result)))
+        for name in ("v", *VARIABLES):
+            _put(file, name, result.column(name))
+        file.attrs.update(result.attributes)
+    return atomic.write(path, content.getbuffer(), force)
+
+
+def _put(file: h5netcdf.File, name: str, array: np.ndarray) -> None:
+    """One variable; texts, and yes or no, in the ways that xarray has for them."""
+    dims, about = dimensions(name), about_variable(name)
+    if array.dtype.kind == "f":
+        variable = file.create_variable(name, dims, array.dtype, array, fillvalue=np.nan)
+    elif array.dtype.kind == "b":
+        variable, about = file.create_variable(name, dims, np.int8, array.astype(np.int8)), about | {"dtype": "bool"}
+    elif array.dtype.kind == "U":
+        variable = file.create_variable(name, dims, h5py.string_dtype(), array.astype(object))
+    else:
+        variable = file.create_variable(name, dims, array.dtype, array)
+    variable.attrs.update(about)
 
 
 def load(path: str | PathLike[str]) -> Result:
@@ -55,6 +83,8 @@ def _opened(name: str, content: bytes) -> xr.Dataset:
     if not content.startswith(b"\x89HDF\r\n\x1a\n"):
         said = "is empty" if not content else "is no NetCDF-4 file"
         raise SpecError(name, allowed=said, advice="give a file that mckibben wrote as .nc")
+    import xarray as xr
+
     try:
         _read_through(content)
         return xr.load_dataset(io.BytesIO(content), engine="h5netcdf", decode_times=False, decode_coords=False)
@@ -74,22 +104,24 @@ def _read_through(content: bytes) -> None:
 
 def _checked(name: str, stored: xr.Dataset) -> xr.Dataset:
     """The Dataset as `result.dataset` makes it: declared variables, plain text, read-only arrays."""
+    import xarray as xr
+
     about = {str(key): str(value) for key, value in stored.attrs.items()}
     writer = about.get("mckibben_version")
     if writer is None:
         raise SpecError(name, allowed="holds no result of mckibben")
     variables: dict[str, Any] = {}
     for variable in VARIABLES:
-        dims = ("step",) if variable in STEP else ("step", "v")
+        dims = dimensions(variable)
         if variable not in stored.data_vars or stored[variable].dims != dims:
             raise SpecError(
                 name, allowed=f"holds no {variable} per {' and '.join(dims)} (written by mckibben {writer})"
             )
         variables[variable] = (dims, _array(name, stored[variable]), dict(stored[variable].attrs))
-    missing = [axis for axis in ("step", "v") if axis not in stored.coords]
+    missing = [axis for axis in COORDINATES if axis not in stored.coords]
     if missing:
         raise SpecError(name, allowed=f"holds no coordinate {missing[0]} (written by mckibben {writer})")
-    coords = {axis: ((axis,), stored[axis].values, dict(stored[axis].attrs)) for axis in ("step", "v")}
+    coords = {axis: ((axis,), stored[axis].values, dict(stored[axis].attrs)) for axis in COORDINATES}
     return xr.Dataset(variables, coords, about)
 
 

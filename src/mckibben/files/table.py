@@ -10,8 +10,9 @@ from pathlib import Path
 from typing import Any
 
 from mckibben.files import atomic
-from mckibben.result import STEP, Result
+from mckibben.result import Result
 from mckibben.sensitivities import Sensitivity
+from mckibben.variables import STEP
 
 __all__ = ["rows", "save_csv", "save_sensitivity"]
 

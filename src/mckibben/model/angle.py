@@ -5,11 +5,10 @@ over. Code that needs many derivatives at an angle passes it as a `Known` and pa
 """
 
 from collections.abc import Callable
+from functools import cache
 from typing import Any, NamedTuple
 
-import jax
-import jax.numpy as jnp
-
+from ..lazy import jax, jnp
 from .parameters import Number, functions
 
 
@@ -26,34 +25,24 @@ class Known(NamedTuple):
         return cls(value, jnp.sin(value), jnp.cos(value))
 
 
-@jax.custom_jvp
-def _sine(value: Number, sine: Number, cosine: Number) -> Number:
-    return sine
-
-
-@jax.custom_jvp
-def _cosine(value: Number, sine: Number, cosine: Number) -> Number:
-    return cosine
-
-
-@_sine.defjvp
-def _sine_jvp(at: tuple[Number, ...], by: tuple[Number, ...]) -> tuple[Number, Number]:
-    return _sine(*at), _cosine(*at) * by[0]
-
-
-@_cosine.defjvp
-def _cosine_jvp(at: tuple[Number, ...], by: tuple[Number, ...]) -> tuple[Number, Number]:
-    return _cosine(*at), -_sine(*at) * by[0]
+@cache
+def _differentiated() -> tuple[Callable[..., Number], Callable[..., Number]]:
+    """Sine and cosine of a `Known` angle, each of which knows that it is the derivative of the other."""
+    sine = jax.custom_jvp(lambda value, sine, cosine: sine)
+    cosine = jax.custom_jvp(lambda value, sine, cosine: cosine)
+    sine.defjvp(lambda at, by: (sine(*at), cosine(*at) * by[0]))
+    cosine.defjvp(lambda at, by: (cosine(*at), -sine(*at) * by[0]))
+    return sine, cosine
 
 
 def sin(angle: Any) -> Number:
     """Sine of a number or of a `Known` angle."""
-    return _sine(*angle) if isinstance(angle, Known) else functions(angle).sin(angle)
+    return _differentiated()[0](*angle) if isinstance(angle, Known) else functions(angle).sin(angle)
 
 
 def cos(angle: Any) -> Number:
     """Cosine of a number or of a `Known` angle."""
-    return _cosine(*angle) if isinstance(angle, Known) else functions(angle).cos(angle)
+    return _differentiated()[1](*angle) if isinstance(angle, Known) else functions(angle).cos(angle)
 
 
 def tan(angle: Any) -> Number:

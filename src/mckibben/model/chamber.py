@@ -3,9 +3,8 @@
 Each law may use that the product of the stretches is 1.
 """
 
-import jax.numpy as jnp
-
 from .. import spec
+from ..lazy import jnp
 from .kinematics import stretches
 from .parameters import Law, Number, Parameters
 

@@ -3,9 +3,7 @@
 It is the state of a long muscle away from its ends: psi = 0 and theta uniform (theory page, closed forms).
 """
 
-import jax
-import jax.numpy as jnp
-
+from ..lazy import jax, jnp
 from .energy import stored
 from .kinematics import radius
 from .parameters import Law, Number, Parameters

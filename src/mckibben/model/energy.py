@@ -5,9 +5,7 @@
 Everything else (forces, tangents, stability, sensitivities) is derived from `quantities` by differentiation.
 """
 
-import jax
-import jax.numpy as jnp
-
+from ..lazy import Array, jax, jnp
 from .chamber import chamber_density
 from .fibres import fibre_densities
 from .kinematics import angle_rate, height_rate, volume_rate
@@ -22,7 +20,7 @@ def stored(theta: Number, psi: Number, kappa: Number, p: Parameters, law: Law) -
     return sum(fibre_densities(theta, psi, kappa, p)) + chamber_density(theta, p, law)
 
 
-def quantities(theta: Number, psi: Number, kappa: Number, p: Parameters, law: Law) -> jax.Array:
+def quantities(theta: Number, psi: Number, kappa: Number, p: Parameters, law: Law) -> Array:
     """Densities per unit v of the four `QUANTITIES`."""
     return jnp.stack([
         stored(theta, psi, kappa, p, law),
@@ -32,7 +30,7 @@ def quantities(theta: Number, psi: Number, kappa: Number, p: Parameters, law: La
     ])  # fmt: skip
 
 
-def scales(p: Parameters, law: Law) -> jax.Array:
+def scales(p: Parameters, law: Law) -> Array:
     """Units that make the quantities of order one: a characteristic energy [J], H0 [m], V0 [m^3] and 1 rad."""
     modulus = jax.grad(jax.grad(lambda t: chamber_density(p.theta0 + t, p, law)))(0.0)
     energy = p.H0 * (p.N * (p.B1 + p.B2 + p.B3) / p.R0**2 + jnp.abs(modulus))

@@ -5,8 +5,7 @@ its derivative psi' = d psi/dv. Taking psi instead of the paper's theta' removes
 bulge overhang its fitting; inextensibility (Eqs. 11-12) then reads theta' = -sin(psi) / (R0 tan(theta0)).
 """
 
-import jax.numpy as jnp
-
+from ..lazy import jnp
 from .angle import cos, sin, tan
 from .parameters import Number, Parameters
 

@@ -4,18 +4,17 @@ Numbers are leaves of JAX pytrees (they can be traced, differentiated and batche
 """
 
 from collections.abc import Callable
+from importlib import import_module
 from typing import Any, NamedTuple
 
 import attrs
-import jax
-import jax.numpy as jnp
 import numpy as np
 
 from .. import spec
+from ..lazy import jnp, set_up
 from ..units import is_traced
-from . import pytrees as pytrees  # spec objects become pytrees with the first use of the model
 
-jax.config.update("jax_enable_x64", True)  # here, because everything that computes with JAX imports this module
+set_up(lambda: import_module("mckibben.model.pytrees"))  # spec objects become pytrees with the first use of JAX
 
 Number = Any
 """A float, a NumPy or JAX scalar, or a tracer."""
@@ -47,7 +46,13 @@ class Parameters(NamedTuple):
 
 def parameters(muscle: "spec.Muscle") -> Parameters:
     """Numbers of a muscle; differentiable with respect to every number of its specification."""
-    return jax.tree.map(lambda x: functions(x).asarray(x, float), numbers(muscle))
+    *given, law = numbers(muscle)
+    arrays = {name: _array(x) for name, x in law.items()} if isinstance(law, dict) else tuple(map(_array, law))
+    return Parameters._make([*map(_array, given), arrays])
+
+
+def _array(value: Number) -> Number:
+    return functions(value).asarray(value, float)
 
 
 def numbers(muscle: "spec.Muscle") -> Parameters:

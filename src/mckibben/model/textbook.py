@@ -4,8 +4,7 @@ They are one formula in three sets of variables: all equal `cylinder_force` with
 F > 0: the muscle pulls its ends together. Arguments broadcast.
 """
 
-import jax.numpy as jnp
-
+from ..lazy import jnp
 from .parameters import Number, Parameters
 
 

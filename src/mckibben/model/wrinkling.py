@@ -1,18 +1,15 @@
 """Whether a uniform cylinder under load is expected to wrinkle before it reaches a target (theory page, stability)."""
 
-from functools import partial
-
-import jax
-import jax.numpy as jnp
-
+from ..kernel import kernel
+from ..lazy import Array, jax, jnp
 from .cylinder import cylinder_angle, cylinder_force
 from .energy import stored
 from .kinematics import height_rate, volume_rate
 from .parameters import Law, Number, Parameters, static_braid
 
 
-@partial(jax.jit, static_argnums=3)
-def wrinkling(length: Number, pressure: Number, p: Parameters, law: Law) -> tuple[Number, Number]:
+@kernel
+def wrinkling(law: Law, length: Number, pressure: Number, p: Parameters) -> tuple[Number, Number]:
     """Wrinkling index and wavelength [m, along v] of the cylinder of a given length [m] at a gauge pressure [Pa].
 
     index = (L_psipsi + 2 a L_thetakappa) / (2 a sqrt(L_kappakappa L_thetatheta)) with a = 1/(R0 tan theta0) and L the
@@ -22,7 +19,7 @@ def wrinkling(length: Number, pressure: Number, p: Parameters, law: Law) -> tupl
     theta = cylinder_angle(length, p)
     force = cylinder_force(theta, pressure, p, law)
 
-    def lagrangian(x: jax.Array) -> Number:
+    def lagrangian(x: Array) -> Number:
         t, psi, kappa = x
         loads = force * height_rate(t, psi, p) + pressure * volume_rate(t, psi, p)
         return stored(t, psi, kappa, p, law) - loads

@@ -3,10 +3,10 @@
 It is quick and not as robust as the search of `solver/path.py`: what it does not reach is NaN.
 """
 
-import jax.numpy as jnp
 import numpy as np
-from jaxtyping import Array, Float
+from jaxtyping import Float
 
+from ..lazy import Array, jnp
 from ..model.energy import scales
 from ..model.parameters import Number, Parameters
 from ..spec import Step

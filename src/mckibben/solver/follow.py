@@ -6,12 +6,11 @@ Where a step cannot be taken the function stops and says how many states are goo
 
 from typing import NamedTuple
 
-import jax
-import jax.numpy as jnp
 import numpy as np
-from jaxtyping import Array, Float, Int
+from jaxtyping import Float, Int
 
 from ..kernel import kernel
+from ..lazy import Array, jax, jnp
 from ..model.parameters import Number, Parameters
 from .problem import Space
 

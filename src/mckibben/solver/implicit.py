@@ -11,11 +11,10 @@ only by its discretisation error.
 from functools import partial
 from typing import Any
 
-import jax
-import jax.numpy as jnp
-from jaxtyping import Array, Float
+from jaxtyping import Float
 
 from ..discretise.assemble import totals
+from ..lazy import Array, jax, jnp
 from ..model.parameters import Number, Parameters
 from .follow import bordered
 from .problem import LENGTH, VOLUME, Space

@@ -10,12 +10,11 @@ and the stability of the state. With A = d theta/du, which is swept over the len
 from functools import lru_cache, partial
 from typing import Any, NamedTuple
 
-import jax
-import jax.numpy as jnp
 import numpy as np
-from jaxtyping import Array, Float
+from jaxtyping import Float
 
 from ..discretise.line import Line
+from ..lazy import Array, jax, jnp
 from ..model.angle import Known, slope
 from ..model.energy import scales, stored
 from ..model.kinematics import angle_rate, height_rate, volume_rate

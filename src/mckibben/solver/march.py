@@ -6,12 +6,11 @@ Made to be mapped over muscles. A muscle for which a step cannot be taken is mar
 from functools import partial
 from typing import Any, NamedTuple
 
-import jax
-import jax.numpy as jnp
-from jaxtyping import Array, Bool, Float, Int
+from jaxtyping import Bool, Float, Int
 
 from ..discretise.line import Line
 from ..kernel import jitted
+from ..lazy import Array, jax, jnp
 from ..model.parameters import Law
 from .lockstep import LOADS, Design, constants, correct, sample, system
 

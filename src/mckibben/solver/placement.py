@@ -1,11 +1,10 @@
 """Where to put points before solving: the end layer that the cylinder formula foretells."""
 
-import jax
-import jax.numpy as jnp
 import numpy as np
-from jaxtyping import Array, Float
+from jaxtyping import Float
 
 from ..kernel import kernel
+from ..lazy import Array, jax, jnp
 from ..model.cylinder import cylinder_force, cylinder_length, end_layer
 from ..model.kinematics import radius
 from ..model.parameters import Law, Parameters

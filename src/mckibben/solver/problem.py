@@ -3,15 +3,15 @@
 from typing import Any
 
 import attrs
-import jax.numpy as jnp
 import numpy as np
-from jaxtyping import Array, Float
+from jaxtyping import Float
 
 from ..discretise.assemble import Assembly, assemble
 from ..discretise.bspline import Spline
 from ..discretise.line import Line
 from ..discretise.mesh import Mesh
 from ..kernel import kernel
+from ..lazy import Array, jnp
 from ..model.energy import quantities, scales
 from ..model.parameters import Law, Number, Parameters
 

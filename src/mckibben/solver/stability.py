@@ -7,15 +7,14 @@ change neither length nor volume to first order, so the control does not matter 
 from typing import NamedTuple
 
 import attrs
-import jax
-import jax.numpy as jnp
 import numpy as np
-from jaxtyping import Array, Float
+from jaxtyping import Float
 
 from ..discretise.assemble import carry, localise
 from ..discretise.line import Line
 from ..discretise.mesh import values
 from ..kernel import kernel
+from ..lazy import Array, jax, jnp
 from ..model.parameters import Number, Parameters
 from ..verdict import Modes
 from .problem import CLOSURE, LENGTH, VOLUME, Space

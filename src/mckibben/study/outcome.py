@@ -12,7 +12,8 @@ from typing import Any
 import attrs
 import numpy as np
 
-from mckibben.result import FIELDS, STEP, Result
+from mckibben.result import Result
+from mckibben.variables import FIELDS, STEP
 from mckibben.verdict import Verdict
 
 __all__ = [

@@ -7,11 +7,11 @@ from functools import partial
 from os import PathLike
 from typing import Any
 
-import jax
 import xarray as xr
 
 from mckibben.experiment import sizes_for
 from mckibben.files.sweeps import Store
+from mckibben.lazy import jax
 from mckibben.spec import Muscle, SpecError, Test
 from mckibben.study.chunk import solve
 from mckibben.study.collect import Memory

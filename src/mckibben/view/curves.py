@@ -10,8 +10,9 @@ from matplotlib import colormaps
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from ..result import FIELDS, STEP, Result
+from ..result import Result
 from ..sensitivities import Sensitivity
+from ..variables import FIELDS, STEP
 from . import style
 from .tornado import tornado
 

@@ -11,12 +11,12 @@ from collections.abc import Mapping, Sequence
 from functools import partial
 from typing import Any
 
-import jax
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.colors import LogNorm, Normalize
 from matplotlib.figure import Figure
 
+from ..lazy import jax
 from ..model.chamber import law_of
 from ..model.cylinder import cylinder_angle, cylinder_force, cylinder_length
 from ..model.parameters import Law, Parameters, parameters
