@@ -96,6 +96,8 @@ class _Apart:
 
 _LEAST_TIME = "jax_persistent_cache_min_compile_time_secs"
 _apart = _Apart()
+_tracing = threading.Lock()
+"""Python traces one function at a time anyway, and faster so: only the compiler runs beside."""
 
 
 class _Kind(NamedTuple):
@@ -208,9 +210,13 @@ class Kernel:
 
         once.__name__ = f"{self._function.__name__}_{secrets.token_hex(4)}"
         arrays = jax.tree.unflatten(kind.tree, [jax.ShapeDtypeStruct(*shape) for shape in kind.shapes])
-        lowered = jax.jit(once, static_argnums=0, keep_unused=True).lower(kind.static, *arrays)
+        with _tracing:
+            lowered = jax.jit(once, static_argnums=0, keep_unused=True).lower(kind.static, *arrays)
         with _apart:
-            return lowered.compile(compiler_options=_known(QUICK))
+            try:
+                return lowered.compile(compiler_options=QUICK)
+            except jax.errors.JaxRuntimeError:  # a compiler that no longer has these options
+                return lowered.compile()
 
     def _cache_size(self) -> int:
         return self._jit._cache_size() + self._inside._cache_size() + len(self._kept)
