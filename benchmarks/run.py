@@ -74,12 +74,13 @@ def show_growth(growth: dict[str, Any], cluster: dict[str, float]) -> None:
     print("\n| muscles in step | time per curve |\n|---|---|")
     for row in growth["together"]:
         print(f"| {row['muscles']} | {written(row['least_s'])} |")
-    print("\n| designs | workers | time | designs/s | singly | memory of the client | store |")
-    print("|---|---|---|---|---|---|---|")
+    print("\n| designs | workers | time | designs/s | singly | memory of the client | of a worker | store |")
+    print("|---|---|---|---|---|---|---|---|")
     for row in growth["sweeps"]:
-        sizes = f"{row['client_mb']:.0f} MB | {row['store_mb']:.0f} MB"
+        sizes = f"{row['client_mb']:.0f} MB | {row['worker_mb']:.0f} MB | {row['store_mb']:.0f} MB"
         share = f"{100.0 * row['single']:.1f} %"
-        head = f"| {row['designs']} | {row['workers']} | {written(row['median_s'])}"
+        cold = " (cold)" if row["cold"] else ""
+        head = f"| {row['designs']} | {row['workers']} | {written(row['median_s'])}{cold}"
         print(f"{head} | {row['designs_per_s']:.0f} | {share} | {sizes} |")
     print(
         f"\nOn paper, {cluster['designs']:.0e} designs: {cluster['core_hours']:.0f} core hours "
@@ -128,7 +129,7 @@ def picture_growth(growth: dict[str, Any]) -> None:
         axes.set(xscale="log", yscale="log", xlabel=label, ylabel="Time per curve (ms)")
         style.tidy(axes)
     for k, workers in enumerate((1, 2)):
-        rows = [row for row in growth["sweeps"] if row["workers"] == workers]
+        rows = [row for row in growth["sweeps"] if row["workers"] == workers and not row["cold"]]
         at, times = [row["designs"] for row in rows], [row["median_s"] for row in rows]
         panels[1, 1].plot(at, times, "os"[k] + "-", color=style.LINES[k], label=f"{workers} worker{'s' * k}")
     panels[1, 1].set(xscale="log", yscale="log", xlabel="Designs in a sweep (21 states, 1e-4)", ylabel="Time (s)")
@@ -139,7 +140,10 @@ def picture_growth(growth: dict[str, Any]) -> None:
             axis.set_minor_formatter(NullFormatter())
         low, high = axes.get_ylim()
         axes.set_ylim(10.0 ** np.floor(np.log10(low)), 10.0 ** np.ceil(np.log10(high)))
-    style.note(figure, "One machine, one run. A sweep's time includes the start of its workers and what they compile.")
+    style.note(
+        figure,
+        "One machine, one run. Sweeps include the start of their workers; what they need was compiled before.",
+    )
     style.save(figure, OUT / "scaling", ("png",))
 
 

@@ -1,5 +1,6 @@
 """How cost grows: with unknowns, states, muscles in step, workers, and up to 100,000 designs; memory beside it."""
 
+import os
 import resource
 import tempfile
 from pathlib import Path
@@ -12,7 +13,7 @@ from curve import LONG, MUSCLE, problem
 from timing import once, timed
 
 import mckibben as mk
-from mckibben.app import cache
+from mckibben import cache
 from mckibben.discretise.line import Line
 from mckibben.solver.direct import find
 from mckibben.solver.equilibrium import Held
@@ -21,7 +22,7 @@ from mckibben.solver.march import march
 from mckibben.solver.problem import LENGTH, VOLUME
 
 UNKNOWNS, STATES, TOGETHER = (8, 12, 16, 24, 32, 48, 64, 96), (6, 21, 101, 401), (1, 4, 16, 64)
-DESIGNS = ((1_000, 1), (1_000, 2), (10_000, 1), (10_000, 2), (100_000, 2))
+COLD, DESIGNS = (1_000, 2), ((1_000, 1), (1_000, 2), (10_000, 1), (10_000, 2), (100_000, 2))
 """(designs, workers) of sweeps into a store."""
 
 
@@ -55,7 +56,7 @@ def together() -> list[dict[str, Any]]:
 
 
 def sweeping(designs: int, workers: int) -> dict[str, Any]:
-    """A sweep into a store at 1e-4; memory is the most that this process has had so far."""
+    """A sweep into a store at 1e-4; memory is the most that this process, and any worker, has had so far."""
     over = {
         "braid.angle": {"from": "33 deg", "to": "41 deg", "points": designs // 50},
         "chamber.thickness": {"from": "0.6 mm", "to": "1.8 mm", "points": 50},
@@ -68,21 +69,37 @@ def sweeping(designs: int, workers: int) -> dict[str, Any]:
         complete = float((data["status"].values == 0).mean())
         single = float((data["method"].values == 1).mean())
         size = sum(file.stat().st_size for file in store.rglob("*") if file.is_file())
-    memory = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 1024
+    client, worker = (
+        resource.getrusage(which).ru_maxrss / 1024 for which in (resource.RUSAGE_SELF, resource.RUSAGE_CHILDREN)
+    )
     return {
         "designs": designs, "workers": workers, "designs_per_s": designs / times["median_s"], "complete": complete,
-        "single": single, "store_mb": size / 2**20, "client_mb": memory, **times,
+        "single": single, "store_mb": size / 2**20, "client_mb": client, "worker_mb": worker, **times,
     }  # fmt: skip
 
 
+def sweeps() -> list[dict[str, Any]]:
+    """From the first on a new machine, whose workers compile, to the largest, which takes minutes."""
+    before = os.environ.get("JAX_COMPILATION_CACHE_DIR")
+    with tempfile.TemporaryDirectory() as folder:
+        os.environ["JAX_COMPILATION_CACHE_DIR"] = folder
+        try:
+            return [{"cold": not k, **sweeping(*size)} for k, size in enumerate((COLD, *DESIGNS))]
+        finally:
+            if before is None:
+                del os.environ["JAX_COMPILATION_CACHE_DIR"]
+            else:
+                os.environ["JAX_COMPILATION_CACHE_DIR"] = before
+
+
 def measure() -> dict[str, Any]:
-    """Everything; the largest sweep takes minutes."""
+    """Everything."""
     cache.use()
     return {
         "unknowns": [following(unknowns, 21) for unknowns in UNKNOWNS],
         "states": [following(24, states) for states in STATES],
         "together": together(),
-        "sweeps": [sweeping(*size) for size in DESIGNS],
+        "sweeps": sweeps(),
     }
 
 

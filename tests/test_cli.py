@@ -12,8 +12,7 @@ from results import made
 from typer.testing import CliRunner, Result
 
 import mckibben as mk
-from mckibben import experiment, presets
-from mckibben.app import cache
+from mckibben import cache, experiment, presets
 from mckibben.app.cli import app
 from mckibben.app.fields import case_text
 from mckibben.spec.text import from_mapping
@@ -348,7 +347,7 @@ def test_installation() -> None:
 COMPILE = """
 import sys
 from pathlib import Path
-from mckibben.app import cache
+from mckibben import cache
 place = Path(sys.argv[1])
 cache.folder = lambda: place
 import jax

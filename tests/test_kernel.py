@@ -29,7 +29,7 @@ import json, sys
 from pathlib import Path
 import numpy as np
 import mckibben as mk
-from mckibben.app import cache
+from mckibben import cache
 place, pressure, ends = Path(sys.argv[1]), sys.argv[2], sys.argv[3]
 cache.folder = lambda: place
 with cache.kept():

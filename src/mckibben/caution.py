@@ -50,7 +50,7 @@ def before(muscle: Muscle, length: float | None, pressure: float) -> list[str]:
     notes = thick_wall(muscle)
     if length is not None:
         p, law = parameters(muscle), law_of(muscle)
-        index, wave = (float(x) for x in wrinkling(np.asarray(length), np.asarray(pressure), p, law))
+        index, wave = (float(x) for x in wrinkling(law, np.asarray(length), np.asarray(pressure), p))
         if index < -1.0:
             at = f"{show(length, 'm', 4)} and {show(pressure, 'Pa', 4)}"
             notes.append(

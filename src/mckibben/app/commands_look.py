@@ -106,7 +106,7 @@ def _installation() -> list[tuple[str, str]]:
     import sys
     from importlib.metadata import version
 
-    from mckibben.app import cache
+    from mckibben import cache
 
     place = cache.use()
     import jax

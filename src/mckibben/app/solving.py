@@ -6,7 +6,7 @@ import warnings
 from collections.abc import Iterator
 from contextlib import contextmanager
 
-from mckibben.app import cache
+from mckibben import cache
 from mckibben.app.console import Watch, progress
 
 __all__ = ["solving"]

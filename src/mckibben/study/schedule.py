@@ -91,11 +91,10 @@ def _reach(scheduler: str) -> None:
 
 
 def _environment() -> dict[str, str]:
-    """What workers find in their environment: one thread each, and the folder of compiled functions that is in use."""
-    config = getattr(sys.modules.get("jax"), "config", None)
-    folder = os.environ.get("JAX_COMPILATION_CACHE_DIR") or getattr(config, "jax_compilation_cache_dir", None)
-    kept = {"JAX_COMPILATION_CACHE_DIR": str(folder), "JAX_PERSISTENT_CACHE_MIN_COMPILE_TIME_SECS": "0"}
-    return {name: os.environ.get(name, value) for name, value in (THREADS | (kept if folder else {})).items()}
+    """What workers find in their environment: one thread each, and the folder that was asked for."""
+    folder = os.environ.get("JAX_COMPILATION_CACHE_DIR")
+    kept = {"JAX_COMPILATION_CACHE_DIR": folder} if folder else {}
+    return {name: os.environ.get(name, value) for name, value in (THREADS | kept).items()}
 
 
 @contextmanager

@@ -5,9 +5,10 @@ from __future__ import annotations
 import os
 import pickle
 from collections.abc import Mapping
-from functools import lru_cache
+from functools import cache, lru_cache
 from typing import TYPE_CHECKING, Any
 
+from mckibben import cache as compiled
 from mckibben.study.designs import Piece, versions
 from mckibben.study.trouble import SweepError
 
@@ -36,6 +37,12 @@ def _base(pickled: bytes) -> Any:
     return pickle.loads(pickled)
 
 
+@cache
+def _keep_compiled() -> None:
+    """Compile once for all workers of a machine and all later sweeps; each machine has its own folder."""
+    compiled.use()
+
+
 def work(base: bytes, rest: tuple[Any, ...], environment: Mapping[str, str], made_by: Mapping[str, str]) -> Columns:
     """Solve one chunk: `base` is the pickled (muscle, test), `rest` the other fields of its `Piece`.
 
@@ -47,6 +54,7 @@ def work(base: bytes, rest: tuple[Any, ...], environment: Mapping[str, str], mad
     if other:
         here = ", ".join(f"{name} {number} (not {made_by[name]})" for name, number in other.items())
         raise SweepError(f"a worker has {here}: install the same versions everywhere")
-    from mckibben.study.chunk import solve  # after the environment, because it imports JAX
+    _keep_compiled()
+    from mckibben.study.chunk import solve  # after the environment, because JAX reads that once
 
     return solve(Piece(*_base(base), *rest))

@@ -1,4 +1,4 @@
-"""Compiled functions kept between calls of the command line: kernels as executables, the rest in JAX's own cache.
+"""Compiled functions kept between processes: kernels as executables, the rest in JAX's own cache.
 
 JAX writes its entries straight into the folder: one that was cut short (the process was killed, the disk full) cannot
 be unpacked later. JAX then warns and compiles anew, but never replaces it. `kept` hears that and clears the folder.
@@ -14,7 +14,8 @@ from contextlib import contextmanager, suppress
 from importlib.metadata import version
 from pathlib import Path
 
-from mckibben import kept as kept_files
+from . import kept as kept_files
+from .lazy import configure
 
 __all__ = ["folder", "kept", "size", "use"]
 
@@ -41,10 +42,8 @@ def use() -> Path | None:
     Settings that are in the environment stay as they are.
     """
     os.environ.setdefault("TF_CPP_MIN_LOG_LEVEL", "3")  # the compiler's own remarks; errors still raise
-    from mckibben.lazy import configure
-
+    place = folder()
     if "JAX_COMPILATION_CACHE_DIR" not in os.environ:
-        place = folder()
         try:
             place.mkdir(mode=0o700, parents=True, exist_ok=True)
         except OSError:
@@ -57,7 +56,7 @@ def use() -> Path | None:
     for name, value in (("min_compile_time_secs", 0), ("min_entry_size_bytes", -1)):
         if f"JAX_PERSISTENT_CACHE_{name.upper()}" not in os.environ:
             configure(f"jax_persistent_cache_{name}", value)
-    return folder()
+    return place
 
 
 @contextmanager
@@ -69,7 +68,7 @@ def kept() -> Iterator[None]:
         if place is None:
             yield
         else:
-            from mckibben.kernel import keeping
+            from .kernel import keeping
 
             with keeping(place / KERNELS):
                 yield
