@@ -337,6 +337,18 @@ def test_what_solves_nothing_loads_no_solver(tmp_path: Path, words: tuple[str, .
     assert done.returncode == 0, done.stderr
 
 
+def test_a_second_run_needs_no_jax(tmp_path: Path) -> None:
+    """Nor does it to show its states, or to save them as a file with everything."""
+    (tmp_path / "case.toml").write_text(invoke("presets", "paper", "--toml").stdout, encoding="utf-8")
+    environment = os.environ | {"JAX_COMPILATION_CACHE_DIR": str(tmp_path / "compiled")}
+    for heavy, output in (("matplotlib", "first.nc"), ("jax,scipy.linalg,xarray,pandas,matplotlib,dask", "second.nc")):
+        call = [sys.executable, "-c", LIGHT, heavy, "run", "case.toml", "-o", output]
+        done = subprocess.run(call, capture_output=True, text=True, cwd=tmp_path, env=environment)
+        assert done.returncode == 0, done.stderr
+    first, second = (mk.load(tmp_path / f"{name}.nc") for name in ("first", "second"))
+    assert (first.force == second.force).all()
+
+
 def test_installation() -> None:
     shown = invoke("info")
     assert shown.exit_code == 0

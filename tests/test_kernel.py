@@ -29,19 +29,17 @@ import json, sys
 from pathlib import Path
 import numpy as np
 import mckibben as mk
-from mckibben import cache
+from mckibben import cache, kernel
 place, pressure, ends = Path(sys.argv[1]), sys.argv[2], sys.argv[3]
 cache.folder = lambda: place
-with cache.kept():
-    from mckibben import kernel
-    counts = {"compiled": 0}
-    compiling = kernel.Kernel._compile
-    def counted(*args):
-        counts["compiled"] += 1
-        return compiling(*args)
-    kernel.Kernel._compile = counted
-    muscle = mk.presets.paper().replace("ends", ends)
-    curve = mk.run(muscle, mk.Isometric(length="115 mm", pressure=f"0 to {pressure}", points=3), tolerance=1e-4)
+counts = {"compiled": 0}
+compiling = kernel.Kernel._compile
+def counted(*args):
+    counts["compiled"] += 1
+    return compiling(*args)
+kernel.Kernel._compile = counted
+muscle = mk.presets.paper().replace("ends", ends)
+curve = mk.run(muscle, mk.Isometric(length="115 mm", pressure=f"0 to {pressure}", points=3), tolerance=1e-4)
 heavy = {"xarray", "pandas", "pint", "scipy.interpolate", "scipy.optimize", "matplotlib"} & sys.modules.keys()
 assert not heavy, heavy
 slow = bool({"jax", "scipy.linalg"} & sys.modules.keys())
@@ -50,9 +48,9 @@ print(json.dumps(counts | {"jax": slow, "force": force, "verdict": curve.verdict
 """
 
 
-def case(place: Path, pressure: str = "1 bar", ends: str = "pinned") -> dict[str, Any]:
+def case(place: Path, pressure: str = "1 bar", ends: str = "pinned", **more: str) -> dict[str, Any]:
     """Counts of compilations and forces of a short test in a process of its own, which must not say anything."""
-    environment = {name: value for name, value in os.environ.items() if "CACHE" not in name}
+    environment = {name: value for name, value in os.environ.items() if "CACHE" not in name} | more
     call = [sys.executable, "-c", CASE, str(place), pressure, ends]
     done = subprocess.run(call, capture_output=True, text=True, env=environment)
     assert (done.returncode, done.stderr) == (0, "")
@@ -79,6 +77,16 @@ def test_a_second_process_compiles_nothing_and_needs_no_jax(tmp_path: Path) -> N
     for file, content in zip(files, contents, strict=False):
         assert abs(file.stat().st_size - len(content)) < 500
     assert not case(tmp_path)["jax"]
+
+
+def test_who_wants_nothing_kept(tmp_path: Path) -> None:
+    off = case(tmp_path, MCKIBBEN_CACHE="off")
+    assert off["jax"]
+    assert off["compiled"] == 0  # but by JAX
+    assert not list(tmp_path.iterdir())
+    kept_there = case(tmp_path)
+    assert kept_there["compiled"] > 0
+    assert [float.fromhex(x) for x in kept_there["force"]] == pytest.approx([float.fromhex(x) for x in off["force"]])
 
 
 @pytest.fixture

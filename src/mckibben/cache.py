@@ -1,4 +1,7 @@
-"""Compiled functions kept between processes: kernels as executables, the rest in JAX's own cache.
+"""The folder of compiled functions, kept between processes: kernels as executables, the rest in JAX's own cache.
+
+Kernels are always kept, unless MCKIBBEN_CACHE is "off". JAX's cache is used by the command line and the workers of a
+sweep only, because it would take in what else a program compiles.
 
 JAX writes its entries straight into the folder: one that was cut short (the process was killed, the disk full) cannot
 be unpacked later. JAX then warns and compiles anew, but never replaces it. `kept` hears that and clears the folder.
@@ -17,7 +20,7 @@ from pathlib import Path
 from . import kept as kept_files
 from .lazy import configure
 
-__all__ = ["folder", "kept", "size", "use"]
+__all__ = ["folder", "kept", "kernels", "off", "size", "use"]
 
 KERNELS = "kernels"
 """Folder beside JAX's own entries."""
@@ -36,12 +39,15 @@ def folder() -> Path:
     return Path(user_cache_dir("mckibben", appauthor=False)) / f"jax-{version('jax')}-{kept_files.processor()}"
 
 
-def use() -> Path | None:
-    """Have JAX keep what it compiles; the folder, or None where it cannot be written (nothing else changes then).
+def off() -> bool:
+    """Whether the user wants nothing to be kept."""
+    return os.environ.get("MCKIBBEN_CACHE") == "off"
 
-    Settings that are in the environment stay as they are.
-    """
-    os.environ.setdefault("TF_CPP_MIN_LOG_LEVEL", "3")  # the compiler's own remarks; errors still raise
+
+def ready() -> Path | None:
+    """The folder, made where it is missing and cleared where it is too full; None where it cannot be written."""
+    if off():
+        return None
     place = folder()
     if "JAX_COMPILATION_CACHE_DIR" not in os.environ:
         try:
@@ -52,6 +58,25 @@ def use() -> Path | None:
             return None
         if size(place)[1] > LIMIT:
             _clear(place)
+    return place
+
+
+def kernels() -> Path | None:
+    """Folder of the kernels; None where they cannot be kept."""
+    place = ready()
+    return None if place is None else place / KERNELS
+
+
+def use() -> Path | None:
+    """Have JAX keep what it compiles; the folder, or None where it cannot be written (nothing else changes then).
+
+    Settings that are in the environment stay as they are.
+    """
+    os.environ.setdefault("TF_CPP_MIN_LOG_LEVEL", "3")  # the compiler's own remarks; errors still raise
+    place = ready()
+    if place is None:
+        return None
+    if "JAX_COMPILATION_CACHE_DIR" not in os.environ:
         configure("jax_compilation_cache_dir", str(place))
     for name, value in (("min_compile_time_secs", 0), ("min_entry_size_bytes", -1)):
         if f"JAX_PERSISTENT_CACHE_{name.upper()}" not in os.environ:
@@ -61,17 +86,11 @@ def use() -> Path | None:
 
 @contextmanager
 def kept() -> Iterator[None]:
-    """Solve inside: what is compiled is kept, and trouble with keeping it is nobody's concern."""
+    """Inside this JAX keeps what it compiles, and trouble with keeping it is nobody's concern."""
     place = use()
     with warnings.catch_warnings(record=True) as caught:
         warnings.filterwarnings("always", message=_TROUBLE)
-        if place is None:
-            yield
-        else:
-            from .kernel import keeping
-
-            with keeping(place / KERNELS):
-                yield
+        yield
     trouble = [warning for warning in caught if re.match(_TROUBLE, str(warning.message))]
     damaged = any(str(warning.message).startswith("Error reading") for warning in trouble)
     if damaged and place is not None and "JAX_COMPILATION_CACHE_DIR" not in os.environ:

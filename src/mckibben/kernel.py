@@ -1,7 +1,8 @@
 """Compiled functions: `@kernel` is `jax.jit` with the first argument static, and knows executables kept on the disk.
 
-Inside `keeping(folder)` a kernel is read from the folder, or compiled and written to it. Kernels there are compiled
-with the least optimisation: a single curve takes some milliseconds more, and the first one several seconds less.
+A kernel is read from the user's folder of compiled functions, or compiled and written to it. Inside `keeping(folder)`,
+as the command line has it, kernels are compiled with the least optimisation: a single curve takes some milliseconds
+more, and the first one several seconds less.
 """
 
 import functools
@@ -13,10 +14,9 @@ from contextlib import contextmanager, suppress
 from pathlib import Path
 from typing import Any, NamedTuple
 
-import attrs
 import numpy as np
 
-from . import kept, native
+from . import cache, kept, native
 from .lazy import imported, jax
 
 OPTIONS: dict[str, Any] = {"xla_cpu_use_fusion_emitters": False}
@@ -46,32 +46,47 @@ def _takes(options: tuple[tuple[str, Any], ...]) -> bool:
     return True
 
 
-@attrs.frozen
-class _Place:
-    """Where kernels are kept, and who compiles them ahead."""
+class _Place(NamedTuple):
+    """Where kernels are kept, and how they are compiled."""
 
     folder: Path
-    pool: ThreadPoolExecutor
+    options: Any
 
 
 _place: _Place | None = None
 
 
 @contextmanager
-def keeping(folder: Path) -> Iterator[None]:
-    """Keep kernels in a folder, if nobody else can write to it and they run on the CPU."""
+def keeping(folder: Path | None, options: dict[str, Any] = QUICK) -> Iterator[None]:
+    """Keep kernels in a folder, if there is one, nobody else can write to it, and they run on the CPU."""
     global _place
-    if not (native.alone() and kept.private(folder)):
+    before, _place = _place, _checked(folder, options) or _place
+    try:
         yield
-        return
-    before = _place
-    with ThreadPoolExecutor(max_workers=2, thread_name_prefix="kernels") as pool:
-        _place = _Place(folder, pool)
-        try:
-            yield
-        finally:
-            _place = before
-            pool.shutdown(wait=False, cancel_futures=True)
+    finally:
+        _place = before
+
+
+def _checked(folder: Path | None, options: dict[str, Any]) -> _Place | None:
+    if folder is None or not (native.alone() and kept.private(folder)):
+        return None
+    return _Place(folder, tuple(options.items()))
+
+
+def _where() -> _Place | None:
+    return _place or _usual()
+
+
+@functools.cache
+def _usual() -> _Place | None:
+    """The user's folder."""
+    return _checked(cache.kernels(), OPTIONS)
+
+
+@functools.cache
+def _ahead() -> ThreadPoolExecutor:
+    """Who reads and compiles kernels before they are called."""
+    return ThreadPoolExecutor(max_workers=2, thread_name_prefix="kernels")
 
 
 class _Apart:
@@ -103,17 +118,17 @@ _tracing = threading.Lock()
 class _Kind(NamedTuple):
     """One executable of a kernel."""
 
-    folder: Path
+    place: _Place
     static: Any
     tree: Any
     shapes: tuple[Any, ...]
 
     @classmethod
-    def of(cls, folder: Path, static: Any, arrays: Any) -> "_Kind":
+    def of(cls, place: _Place, static: Any, arrays: Any) -> "_Kind":
         """By the arrays' shapes and types."""
         leaves, tree = native.flatten(arrays)
         types = (leaf.dtype if hasattr(leaf, "dtype") else np.dtype(type(leaf)) for leaf in leaves)
-        return cls(folder, static, tree, tuple(zip(map(np.shape, leaves), types, strict=True)))
+        return cls(place, static, tree, tuple(zip(map(np.shape, leaves), types, strict=True)))
 
 
 class Kernel:
@@ -146,9 +161,10 @@ class Kernel:
         static, arrays = args[0], args[1:]
         if imported() and any(isinstance(leaf, jax.core.Tracer) for leaf in jax.tree.leaves(arrays)):
             return self._inside(*args)
-        if _place is None:
+        place = _where()
+        if place is None:
             return self._jit(*args)
-        kind = _Kind.of(_place.folder, static, arrays)
+        kind = _Kind.of(place, static, arrays)
         found = self._find(kind)
         if found is not None:
             try:
@@ -159,8 +175,9 @@ class Kernel:
 
     def prepare(self, static: Any, *arrays: Any) -> None:
         """Have the kernel read or compiled in the background, where kernels are kept; arrays count by shape alone."""
-        if _place is not None:
-            _place.pool.submit(self._find, _Kind.of(_place.folder, static, arrays))
+        place = _where()
+        if place is not None:
+            _ahead().submit(self._find, _Kind.of(place, static, arrays))
 
     def _find(self, kind: _Kind) -> Any:
         """The executable, made once and waited for by others; None where it cannot be kept."""
@@ -184,10 +201,10 @@ class Kernel:
 
     def _file(self, kind: _Kind) -> Path | None:
         try:
-            key = kept.key(self._name, kind.static, (str(kind.tree), kind.shapes), QUICK)
+            key = kept.key(self._name, kind.static, (str(kind.tree), kind.shapes), dict(kind.place.options))
         except kept.UnkeepableError:
             return None
-        return kind.folder / f"{self._function.__name__.strip('_')}-{key}{kept.SUFFIX}"
+        return kind.place.folder / f"{self._function.__name__.strip('_')}-{key}{kept.SUFFIX}"
 
     def _drop(self, kind: _Kind) -> None:
         """Neither use nor keep an executable again."""
@@ -214,7 +231,7 @@ class Kernel:
             lowered = jax.jit(once, static_argnums=0, keep_unused=True).lower(kind.static, *arrays)
         with _apart:
             try:
-                return lowered.compile(compiler_options=QUICK)
+                return lowered.compile(compiler_options=dict(kind.place.options))
             except jax.errors.JaxRuntimeError:  # a compiler that no longer has these options
                 return lowered.compile()
 

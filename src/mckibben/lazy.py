@@ -24,7 +24,7 @@ def imported() -> bool:
 def set_up(action: Callable[[], object]) -> None:
     """Do something before the package uses JAX for the first time, or now if that was before."""
     with _lock:
-        if _waiting or not _ready:
+        if not _ready:
             _waiting.append(action)
             return
     action()
@@ -45,9 +45,8 @@ _pristine: dict[str, Any] = {}
 
 def changed_settings() -> dict[str, Any]:
     """Settings that may not be what the environment says: those changed since, or all if others imported JAX."""
-    if not imported():
-        return {}
-    now = import_module("jax").config.values
+    with _lock:  # not while it is being imported
+        now = import_module("jax").config.values if imported() else {}
     return {name: value for name, value in now.items() if name not in _pristine or _pristine[name] != value}
 
 

@@ -1,10 +1,11 @@
 """Limits as a feature: the shortest and longest length, the force extremum, the least pressure that holds a length."""
 
-from typing import Any
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
 
 import attrs
 import numpy as np
-import xarray as xr
 
 from .branch import BranchEnd, branch_end, look
 from .experiment import Bench
@@ -13,6 +14,9 @@ from .solver.equilibrium import Held
 from .spec import Muscle, Path, SpecError, Step
 from .spec.text import to_toml
 from .verdict import Shape
+
+if TYPE_CHECKING:
+    import xarray as xr
 
 SIZE = 48
 """Half-length unknowns: limits of the reference muscle to 1e-8."""
@@ -148,4 +152,6 @@ def working_range(muscle: Muscle, *, pressures: Any) -> xr.Dataset:
     }
     causes = ("pressure", [one.shortest_cause for one in found])
     pressure = ("pressure", [one.pressure for one in found], {"units": "Pa", "long_name": "gauge pressure"})
+    import xarray as xr  # here, because it takes half a second to import
+
     return xr.Dataset(variables | {"shortest_cause": causes}, {"pressure": pressure}, about)

@@ -116,7 +116,8 @@ def _installation() -> list[tuple[str, str]]:
     rows += [("python", f"{platform.python_version()} ({sys.executable})"), ("platform", platform.platform())]
     rows.append(("JAX devices", ", ".join(str(device) for device in jax.devices())))
     if place is None:
-        return [*rows, ("compiled functions", f"not kept: {cache.folder()} cannot be written")]
+        why = "MCKIBBEN_CACHE is off" if cache.off() else f"{cache.folder()} cannot be written"
+        return [*rows, ("compiled functions", f"not kept: {why}")]
     count, size = cache.size(place)
     return [*rows, ("compiled functions", f"{count} ({size / 2**20:.1f} MB) in {place}")]
 

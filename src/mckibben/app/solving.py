@@ -15,7 +15,9 @@ __all__ = ["solving"]
 @contextmanager
 def solving(what: str, hidden: bool = False, unit: str = "") -> Iterator[Watch]:
     """Solve inside and tell the given function how far it is; nothing shows with `hidden`, or without a terminal."""
-    with progress(what, hidden, unit) as watch, cache.kept():
+    from mckibben.kernel import keeping
+
+    with progress(what, hidden, unit) as watch, cache.kept(), keeping(cache.kernels()):
         from mckibben.experiment import MuscleWarning  # after the cache is set, before anything is compiled
 
         warnings.simplefilter("ignore", MuscleWarning)
