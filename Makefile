@@ -62,8 +62,9 @@ examples: setup
 		MPLBACKEND=Agg $(BIN)/python "$$script"; \
 	done
 
-bench: setup
-	$(BIN)/python benchmarks/run.py
+bench: setup # with nothing compiled yet, so that cold is cold
+	rm -rf out/compiled
+	JAX_COMPILATION_CACHE_DIR=$(CURDIR)/out/compiled $(BIN)/python benchmarks/run.py
 
 pictures: setup
 	$(BIN)/python docs/pictures.py

@@ -235,13 +235,17 @@ class Kernel:
             except jax.errors.JaxRuntimeError:  # a compiler that no longer has these options
                 return lowered.compile()
 
+    def _by_jax(self) -> list[Any]:
+        """What JAX has compiled, as far as it was asked."""
+        return [self.__dict__[name] for name in ("_jit", "_inside") if name in self.__dict__]
+
     def _cache_size(self) -> int:
-        return self._jit._cache_size() + self._inside._cache_size() + len(self._kept)
+        return sum(function._cache_size() for function in self._by_jax()) + len(self._kept)
 
     def clear_cache(self) -> None:
         """Forget what was compiled in this process."""
-        self._jit.clear_cache()
-        self._inside.clear_cache()
+        for function in self._by_jax():
+            function.clear_cache()
         self._kept.clear()
 
 
