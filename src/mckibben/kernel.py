@@ -19,15 +19,15 @@ import numpy as np
 from . import cache, kept, native
 from .lazy import imported, jax
 
-OPTIONS: dict[str, Any] = {"xla_cpu_use_fusion_emitters": False}
-"""For repeated use: with the former emitters of loops XLA compiles in two thirds of the time, to faster code."""
-ALIKE: dict[str, Any] = OPTIONS | {
+OPTIONS: dict[str, Any] = {
+    "xla_cpu_use_fusion_emitters": False,
     "xla_cpu_multi_thread_eigen": False,
     "xla_disable_hlo_passes": "cpu-parallel-task-assigner",
 }
-"""For code that must give the same bits on one core and on many: no work is divided among threads."""
+"""With the former emitters of loops XLA compiles in two thirds of the time, to faster code. No work is divided among
+threads: the same bits come out on one core and on many."""
 QUICK: dict[str, Any] = OPTIONS | {"xla_backend_optimization_level": 0}
-"""For a single use: half the time to compile again, three times the time to run."""
+"""For few calls: half the time to compile again, three times the time to run."""
 
 
 def _known(options: dict[str, Any]) -> dict[str, Any] | None:
@@ -259,7 +259,7 @@ def jitted(function: Callable[..., Any], **settings: Any) -> Callable[..., Any]:
 
     @functools.cache
     def made() -> Any:
-        return jax.jit(function, compiler_options=_known(ALIKE), **settings)
+        return jax.jit(function, compiler_options=_known(OPTIONS), **settings)
 
     @functools.wraps(function)
     def call(*args: Any, **named: Any) -> Any:

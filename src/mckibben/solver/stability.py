@@ -4,7 +4,7 @@ Three counts: symmetric modes under length control, symmetric modes under force 
 change neither length nor volume to first order, so the control does not matter to them).
 """
 
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import attrs
 import numpy as np
@@ -54,42 +54,49 @@ def stiffness(space: Space, p: Parameters, b: Number, u: Float[Array, "n m"], lo
 def count_modes(space: Space, s: Stiffness, pressure_held: bool = True) -> list[Modes]:
     """Modes of each state; with the volume held instead of the pressure its gradient is a constraint too."""
     always = ([] if pressure_held else [VOLUME]) + ([CLOSURE] if space.basis.closes else [])
-    found = []
-    for k in range(len(s.tangent)):
-        K, G = np.asarray(s.tangent[k]), np.asarray(s.gradients[k])
-        length, soft_length = negative(K, G[[LENGTH, *always]])
-        force, soft_force = negative(K, G[always])
-        anti, soft_anti = None, None
-        if s.closure.shape[1]:
-            anti, soft_anti = negative(np.asarray(s.antisymmetric[k]), np.asarray(s.closure[k])[None])
-        found.append(Modes(length, force, anti, soft_length, soft_force, soft_anti))
-    return found
+    K, G, closure = np.asarray(s.tangent), np.asarray(s.gradients), np.asarray(s.closure)
+    lengths, forces = negative(K, G[:, [LENGTH, *always]]), negative(K, G[:, always])
+    sideways: list[Any] = [(None, None)] * len(K)
+    if closure.shape[1]:
+        sideways = negative(np.asarray(s.antisymmetric), closure[:, None])
+    return [
+        Modes(length, force, anti, soft_length, soft_force, soft_anti)
+        for (length, soft_length), (force, soft_force), (anti, soft_anti) in zip(lengths, forces, sideways, strict=True)
+    ]
 
 
 def weakest(s: Stiffness) -> tuple[np.ndarray, float]:
     """The softest antisymmetric mode of the first state, in coefficients of the even modes, and its stiffness."""
-    null = null_space(np.asarray(s.closure[0])[None])
+    closure = np.asarray(s.closure[0])[None]
+    null = null_space(closure[binding(closure)])
     values, vectors = np.linalg.eigh(null.T @ np.asarray(s.antisymmetric[0]) @ null)
     return np.asarray(null @ vectors[:, 0]), float(values[0])
 
 
+def binding(constraints: np.ndarray) -> np.ndarray:
+    """Which constraint rows (..., c, m) constrain anything: those that are not zero."""
+    size = np.abs(constraints).max(axis=-1)
+    return np.asarray(size > 1e-10 * np.maximum(1.0, size.max(axis=-1, initial=0.0))[..., None])
+
+
 def null_space(constraints: np.ndarray) -> np.ndarray:
-    """Orthonormal basis of what the constraint rows leave free; rows that are zero constrain nothing."""
-    size = np.abs(constraints).max(axis=1)
-    rows = constraints[size > 1e-10 * max(1.0, float(size.max(initial=0.0)))]
-    if not len(rows):
-        return np.eye(constraints.shape[1])
-    return np.asarray(np.linalg.qr(rows.T, mode="complete")[0][:, len(rows) :])
+    """Orthonormal basis (..., m, m - c) of what constraint rows (..., c, m) leave free."""
+    return np.asarray(np.linalg.qr(constraints.swapaxes(-1, -2), mode="complete")[0][..., constraints.shape[-2] :])
 
 
-def negative(K: np.ndarray, constraints: np.ndarray) -> tuple[int, float]:
-    """Number of negative eigenvalues of K on the null space of the constraint rows, and the least over the largest.
+def negative(K: np.ndarray, constraints: np.ndarray) -> list[tuple[int, float]]:
+    """Number of negative eigenvalues of each K (n, m, m) on what its constraint rows (n, c, m) leave free, and the
+    least over the largest.
 
     (-1, NaN) where K is not finite.
     """
-    if not np.isfinite(K).all():
-        return -1, float("nan")
-    null = null_space(constraints)
-    values = np.linalg.eigvalsh(null.T @ K @ null)
-    size = float(np.abs(values).max())
-    return int((values < -1e-12 * size).sum()), float(values[0]) / size
+    found, finite, bound = [(-1, float("nan"))] * len(K), np.isfinite(K).all(axis=(1, 2)), binding(constraints)
+    for pattern in {tuple(row) for row in bound[finite].tolist()}:  # nearly always one
+        some = np.flatnonzero(finite & (bound == pattern).all(axis=1))
+        null = null_space(constraints[some][:, list(pattern)])
+        values = np.linalg.eigvalsh(null.swapaxes(1, 2) @ K[some] @ null)
+        size = np.abs(values).max(axis=1)
+        counts, softest = (values < -1e-12 * size[:, None]).sum(axis=1), values[:, 0] / size
+        for k, count, soft in zip(some, counts, softest, strict=True):
+            found[k] = (int(count), float(soft))
+    return found
