@@ -2,7 +2,7 @@
 
 `follow` is the compiled part alone, from a given first state; a path seeks that state too; `run` and `solve` are what a
 user calls, with shapes, modes, fibre tension, error estimates and verdicts. The paper's discretisation goes through the
-same solver, though its steps are taken by the robust search where the compiled following stops.
+same solver, every step by the robust search.
 """
 
 from typing import Any

@@ -79,4 +79,4 @@ def _walk(space: Space, p: Parameters, b: Number, w: Array, select: np.ndarray, 
     n = way.shape[0]
     track = follow(space, p, b, w, jnp.asarray(select), way, jnp.asarray(n), jnp.asarray(CLOSE))
     states = jnp.where((jnp.arange(n) < track.good)[:, None], track.w, jnp.nan)
-    return states, jnp.concatenate([track.totals[-1, 1:3], states[-1, -2:]])
+    return states, jnp.concatenate([track.values[-1], states[-1, -2:]])

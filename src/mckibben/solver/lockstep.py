@@ -22,6 +22,8 @@ from ..model.parameters import Law, Number, Parameters
 
 LOADS = 2
 """Unknowns beside the shape's: force and pressure."""
+HEAVY = 1e3
+"""Stiffness of what holds a value over the sum of all others: enough for any stable state, and costs three digits."""
 
 
 WORK, MOST, MANY = 200_000, 64, 1024
@@ -121,8 +123,9 @@ def _slopes(law: Law, d: Design, F: Number, P: Number, at: Sample) -> tuple[Any,
         return _lagrangian(at.theta._replace(value=theta), at.psi._replace(value=psi), kappa, F, P, d, law)
 
     x = (at.theta.value, at.psi.value, at.kappa)
-    first = [jax.grad(density, i) for i in range(3)]
-    return [f(*x) for f in first], [[jax.grad(first[i], j)(*x) for j in range(i, 3)] for i in range(3)]
+    first, change = jax.linearize(jax.grad(density, (0, 1, 2)), *x)
+    second = [change(*(jnp.full_like(x[k], i == k) for k in range(3))) for i in range(3)]
+    return list(first), [list(second[i][i:]) for i in range(3)]
 
 
 def _constrained(d: Design, at: Sample) -> Array:
@@ -210,11 +213,12 @@ class Correction(NamedTuple):
 def correct(s: System, w: Array, select: Array, targets: Array) -> Correction:
     """Solve the bordered system K du - G^T dl = -rest, select (G du, dl) = targets - held, by one Cholesky factor.
 
-    K plus the held gradients' squares is positive definite exactly where K is on what the held values leave free.
+    K plus the held gradients' squares, weighted heavily, is positive definite where K is on what the held values leave
+    free.
     """
     A, on_loads = select[:, :2] @ s.gradients, select[:, 2:]
     miss = select @ jnp.concatenate([s.values, w[-2:]]) - targets
-    size = jnp.trace(jnp.abs(s.stiffness)) / jnp.maximum(jnp.sum(A**2), 1e-30)
+    size = HEAVY * jnp.trace(jnp.abs(s.stiffness)) / jnp.maximum(jnp.sum(A**2), 1e-30)
     factor = jnp.linalg.cholesky(s.stiffness + size * A.T @ A)
     stable = jnp.isfinite(factor).all()
     sides = jnp.concatenate([s.rest[:, None], s.gradients.T], axis=1)

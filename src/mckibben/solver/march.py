@@ -12,6 +12,7 @@ from ..discretise.line import Line
 from ..kernel import jitted
 from ..lazy import Array, jax, jnp
 from ..model.parameters import Law
+from .follow import Guess, predict
 from .lockstep import LOADS, Design, constants, correct, sample, system
 
 FIRST_STEP, GROWTH, CUT = 0.25, 2.0, 0.4
@@ -21,15 +22,6 @@ CLOSE, ARRIVED, FAR = 0.05, 1e-2, 0.6
 is, and above which a step was too long."""
 LARGEST_CHANGE = 0.8
 """Largest change of psi [rad] from state to state that is trusted to stay on the branch."""
-
-
-class Guess(NamedTuple):
-    """Where the next state starts from: what is known of the last two."""
-
-    w: Array
-    before: Array  #: w of the state before
-    slope: Array  #: dw for the step from `before` to w, taken at `before`
-    tangents: Array  #: dw by the held values, at w
 
 
 class Arrival(NamedTuple):
@@ -126,17 +118,6 @@ def walk(
 
     blank = Rows(jnp.zeros((n, line.unknowns + LOADS)), jnp.full(n, jnp.inf), jnp.zeros(n, bool))
     return jax.lax.fori_loop(0, count, advance, (g, blank))[1]
-
-
-def predict(g: Guess, done: Array, ahead: Array) -> Array:
-    """The cubic through the last two states with their tangents where the path goes straight on, else the tangent."""
-    length, past = jnp.linalg.norm(ahead), jnp.linalg.norm(done)
-    ratio = length / jnp.maximum(past, 1e-300)
-    straight = (ahead @ done > 0.999 * length * past) & (past > 0.0) & (ratio < 3.0)
-    t = 1.0 + jnp.where(straight, ratio, 0.0)
-    cubic = (2 * t**3 - 3 * t**2 + 1) * g.before + (t**3 - 2 * t**2 + t) * g.slope
-    cubic = cubic + (3 * t**2 - 2 * t**3) * g.w + (t**3 - t**2) * (g.tangents @ done)
-    return jnp.where(straight, cubic, g.w + g.tangents @ ahead)
 
 
 class March(NamedTuple):

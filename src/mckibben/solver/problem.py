@@ -30,6 +30,17 @@ class Space:
         """Operators on a muscle."""
         return self.basis.mesh(p, b)
 
+    @property
+    def half(self) -> bool:
+        """Whether it is a half line, for which there are quicker equations (`lockstep`)."""
+        return isinstance(self.basis, Line) and self.basis.half
+
+    @property
+    def line(self) -> Line:
+        """The basis, which must be a line."""
+        assert isinstance(self.basis, Line)
+        return self.basis
+
     def density(self, p: Parameters) -> Any:
         """Pointwise quantities of the local fields x = (theta, y), in units of `scales`."""
         unit = scales(p, self.law)

@@ -11,7 +11,6 @@ import numpy as np
 from jaxtyping import Float
 
 from ..discretise.assemble import carry, localise
-from ..discretise.line import Line
 from ..discretise.mesh import values
 from ..kernel import kernel
 from ..lazy import Array, jax, jnp
@@ -39,10 +38,10 @@ def stiffness(space: Space, p: Parameters, b: Number, u: Float[Array, "n m"], lo
     local = jax.vmap(lambda u: localise(form, density, values(mesh, form, u, p), p))(u)
     base = jax.vmap(carry, (None, 0, 0))(mesh, local, rows)
     tangent, gradients = base.tangents[:, 0], base.gradients
-    if not (isinstance(space.basis, Line) and space.basis.half):
+    if not space.half:
         none = jnp.zeros((len(u), 0, 0))
         return Stiffness(tangent, gradients, base.totals, base.state, none, jnp.zeros((len(u), 0)))
-    basis = attrs.evolve(space.basis, modes="even")
+    basis = attrs.evolve(space.line, modes="even")
     even = jax.vmap(carry, (None, 0, 0))(basis.mesh(p, b), local, rows)
     # antisymmetric theta is zero at mid-length: half of the closure, and the change at a free end
     closure = 0.5 * even.gradients[:, CLOSURE]
