@@ -2,7 +2,7 @@
 
 `follow` is the compiled part alone, from a given first state; a path seeks that state too; `run` and `solve` are what a
 user calls, with shapes, modes, fibre tension, error estimates and verdicts. The paper's discretisation goes through the
-same solver, every step by the robust search.
+same solver, but by equations that are not made for speed.
 """
 
 from typing import Any

@@ -18,8 +18,8 @@ from mckibben.observe import OBSERVED, observe, peak
 from mckibben.solver.approach import units
 from mckibben.solver.direct import find
 from mckibben.solver.equilibrium import Equilibrium, Held
-from mckibben.solver.implicit import bordered, settle
-from mckibben.solver.problem import Space
+from mckibben.solver.implicit import settle
+from mckibben.solver.problem import Space, bordered
 
 PAPER, REFERENCE = mk.presets.paper(), mk.presets.reference()
 # Central differences, exact for polynomials of degree 6.
@@ -52,7 +52,9 @@ def results(space: Space, tree: Any, at: jax.Array, share: jax.Array, b: Any, w:
     p = parameters(jax.tree.unflatten(tree, list(numbers[:-2])))
     targets = numbers[-2:] / (select @ units(space, p))
     if anew:
-        w = jax.lax.fori_loop(0, 8, lambda _, w: w - jnp.linalg.solve(*bordered(space, p, b, w, select, targets)), w)
+        w = jax.lax.fori_loop(
+            0, 8, lambda _, w: w - jnp.linalg.solve(*bordered(space, p, b, w, select, targets)[:2]), w
+        )
     else:
         w = settle(space, w, p, b, select, targets)
     seen = observe(space, p, b, w)

@@ -4,6 +4,7 @@ The unknowns are w = (u, force, pressure), and any two of length, volume, force 
 cannot be taken the function stops and says how many states are good; nothing is lost.
 """
 
+from collections.abc import Callable
 from typing import NamedTuple
 
 import numpy as np
@@ -12,8 +13,8 @@ from jaxtyping import Float, Int
 from ..kernel import kernel
 from ..lazy import Array, jax, jnp
 from ..model.parameters import Number, Parameters
-from .lockstep import LOADS, Design, constants, correct, design, sample, system
-from .problem import Space
+from .lockstep import HEAVY, LOADS, Correction, correct, design, sample, system
+from .problem import Space, bordered
 
 CORRECTIONS = 8
 """Newton systems a step may take; a good one needs one or two."""
@@ -48,27 +49,54 @@ class _Step(NamedTuple):
     stable: Array
 
 
-def _take(space: Space, d: Design, w: Array, good: Array, select: Array, target: Array, tolerance: Array) -> _Step:
+Newton = Callable[[Array, Array], tuple[Correction, Array]]
+"""(w, target) -> a Newton step, and length and volume after it."""
+
+
+def _newton(space: Space, p: Parameters, b: Number, select: Array) -> Newton:
+    """By the quick equations of a half line, or by the bordered system of any space."""
+
+    def quick(w: Array, target: Array) -> tuple[Correction, Array]:
+        s = system(space.line, space.law, d, w, sample(space.line, d, w))
+        c = correct(s, w, select, target)
+        return c, s.values + s.gradients @ c.step[:-LOADS]
+
+    def general(w: Array, target: Array) -> tuple[Correction, Array]:
+        matrix, rest, values = bordered(space, p, b, w, select, target)
+        sides = jnp.concatenate([-rest[:, None], jnp.eye(len(w))[:, -LOADS:]], axis=1)
+        solved = jnp.linalg.solve(matrix, sides)
+        K, held = matrix[:-LOADS, :-LOADS], matrix[-LOADS:, :-LOADS]
+        size = HEAVY * jnp.trace(jnp.abs(K)) / jnp.maximum(jnp.sum(held**2), 1e-30)
+        stable = jnp.isfinite(jnp.linalg.cholesky(K + size * held.T @ held)).all()
+        change = -matrix[:-LOADS, -LOADS:].T @ solved[:-LOADS, 0]
+        return Correction(solved[:, 0], solved[:, 1:], stable), values + change
+
+    if not space.half:
+        return general
+    d = design(space.line, space.law, p, b)
+    return quick
+
+
+def _take(newton: Newton, w: Array, good: Array, target: Array, tolerance: Array) -> _Step:
     """Correct w onto what is held, until the last step, whose square is the error that is left, is below tolerance.
 
     A guess that is no minimum went too far from the last good state: it is taken back by half.
     """
-    line, law = space.line, space.law
 
     def more(step: _Step) -> Array:
         return (step.iterations < CORRECTIONS) & (step.change > tolerance)
 
-    def newton(step: _Step) -> _Step:
-        s = system(line, law, d, step.w, sample(line, d, step.w))
-        c = correct(s, step.w, select, target)
-        du, change = c.step[:-LOADS], jnp.abs(c.step[:-LOADS]).max()
+    def again(step: _Step) -> _Step:
+        c, values = newton(step.w, target)
+        change = jnp.abs(c.step[:-LOADS]).max()
         return _Step(
-            jnp.where(c.stable, step.w + c.step, 0.5 * (step.w + good)), s.values + s.gradients @ du, c.tangents,
+            jnp.where(c.stable, step.w + c.step, 0.5 * (step.w + good)), values, c.tangents,
             jnp.where(c.stable, change, jnp.inf), step.iterations + 1, c.stable,
         )  # fmt: skip
 
     far, none = jnp.asarray(jnp.inf), jnp.zeros((), int)
-    return jax.lax.while_loop(more, newton, _Step(w, jnp.zeros(2), jnp.zeros((len(w), 2)), far, none, jnp.array(False)))
+    start = _Step(w, jnp.zeros(2), jnp.zeros((len(w), 2)), far, none, jnp.array(False))
+    return jax.lax.while_loop(more, again, start)
 
 
 @kernel
@@ -83,7 +111,8 @@ def follow(
     tolerance: Float[Array, ""],
 ) -> Track:
     """From a good state w at targets[0] through targets[1 .. count - 1]; the rest of the array is padding."""
-    n, shape, d = len(targets), jnp.asarray(constants(space.line).shape), design(space.line, space.law, p, b)
+    n, newton = len(targets), _newton(space, p, b, select)
+    psi = space.basis.slope_factor(p) * space.mesh(p, b).fields[:, 0]
     track = Track(jnp.zeros((n, len(w))), jnp.zeros((n, 2)), jnp.zeros(n, int), jnp.zeros((), int))
 
     def more(carry: tuple[Track, Guess, Array]) -> Array:
@@ -95,8 +124,8 @@ def follow(
         k = track.good  # for k = 0 the given state is corrected where it stands, which also gives the tangents
         now, last = targets[k], targets[jnp.maximum(k - 1, 0)]
         guess = predict(g, last - targets[jnp.maximum(k - 2, 0)], now - last)
-        step = _take(space, d, guess, g.w, select, now, tolerance)
-        moved = jnp.abs(shape @ (step.w - g.w)[:-LOADS]).max()
+        step = _take(newton, guess, g.w, now, tolerance)
+        moved = jnp.abs(psi @ (step.w - g.w)[:-LOADS]).max()
         ok = (step.change <= tolerance) & (moved < LARGEST_CHANGE) & step.stable & jnp.isfinite(step.w).all()
         ok = ok | (k == 0)
         kept = Track(

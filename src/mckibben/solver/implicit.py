@@ -16,7 +16,7 @@ from jaxtyping import Float
 from ..discretise.assemble import totals
 from ..lazy import Array, jax, jnp
 from ..model.parameters import Number, Parameters
-from .problem import LENGTH, VOLUME, Space
+from .problem import LENGTH, VOLUME, Space, bordered
 
 
 def potential(
@@ -40,18 +40,6 @@ def imbalance(
     """R: the gradient of the potential energy by u, and what is held minus its targets; dimensionless."""
     rest, have = potential(space, p, b, w)
     return jnp.concatenate([rest, select @ have - targets])
-
-
-def bordered(
-    space: Space, p: Parameters, b: Number, w: Float[Array, " w"], select: Any, targets: Float[Array, "2"]
-) -> tuple[Float[Array, "w w"], Float[Array, " w"]]:
-    """The matrix dR/dw, and R itself, from totals and gradients of the whole."""
-    row = jnp.stack([jnp.ones_like(w[-2]), -w[-2], -w[-1], jnp.zeros_like(w[-1])])
-    a = space.assemble(p, b, w[:-2], row[None])
-    G = a.gradients[LENGTH : VOLUME + 1]
-    matrix = jnp.block([[a.tangents[0], -G.T], [select[:, :2] @ G, select[:, 2:]]])
-    miss = select @ jnp.concatenate([a.totals[LENGTH : VOLUME + 1], w[-2:]]) - targets
-    return matrix, jnp.concatenate([row @ a.gradients, miss])
 
 
 @partial(jax.custom_jvp, nondiff_argnums=(0,))

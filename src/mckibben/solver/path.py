@@ -42,7 +42,7 @@ def prepare(space: Space, p: Parameters, b: float, count: int) -> None:
     """Have what follows a path of `count` states compiled in the background (see `kernel`)."""
     u = np.empty(space.basis.unknowns)
     evaluate.prepare(space, p, b, u)
-    if count > 1 and space.half:
+    if count > 1 and not space.basis.closes:
         w, targets = np.empty(len(u) + 2), padded(np.empty((count, 2)))
         follow.prepare(space, p, b, w, np.empty((2, 4)), targets, np.asarray(count), np.asarray(0.0))
 
@@ -111,7 +111,7 @@ def _advance(
 
 def _follow(problem: Problem, path: list[Held], here: Equilibrium, tolerance: float) -> list[tuple[np.ndarray, int]]:
     """Compiled following from `here` = path[0]; the states after it that are good."""
-    if len(path) < 2 or not problem.space.half:
+    if problem.space.basis.closes or len(path) < 2:
         return []
     targets = np.array([held.targets(problem) for held in path])
     w = np.concatenate([here.u, here.loads[[LENGTH, VOLUME]]])

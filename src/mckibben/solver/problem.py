@@ -63,6 +63,22 @@ def evaluate(space: Space, p: Parameters, b: Number, u: Float[Array, " m"]) -> A
     return space.assemble(p, b, u, jnp.eye(4))
 
 
+def bordered(
+    space: Space, p: Parameters, b: Number, w: Float[Array, " w"], select: Any, targets: Float[Array, "2"]
+) -> tuple[Float[Array, "w w"], Float[Array, " w"], Float[Array, "2"]]:
+    """Equilibrium R(w) = 0 on any space: dR/dw, R, and length and volume, all dimensionless.
+
+    w = (u, force, pressure); R is the gradient of the potential energy by u, and what `select` holds minus `targets`.
+    """
+    row = jnp.stack([jnp.ones_like(w[-2]), -w[-2], -w[-1], jnp.zeros_like(w[-1])])
+    a = space.assemble(p, b, w[:-2], row[None])
+    G = a.gradients[LENGTH : VOLUME + 1]
+    matrix = jnp.block([[a.tangents[0], -G.T], [select[:, :2] @ G, select[:, 2:]]])
+    values = a.totals[LENGTH : VOLUME + 1]
+    miss = select @ jnp.concatenate([values, w[-2:]]) - targets
+    return matrix, jnp.concatenate([row @ a.gradients, miss]), values
+
+
 @attrs.frozen
 class Problem:
     """A space on one muscle: numbers, point placement, units and operators."""
