@@ -26,6 +26,8 @@ def set_up(action: Callable[[], object]) -> None:
     with _lock:
         if not _ready:
             _waiting.append(action)
+            if imported():  # who imported it may use it before the package does, and means the same arithmetic
+                _load("jax")
             return
     action()
 
