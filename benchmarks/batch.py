@@ -15,55 +15,50 @@ from curve import EXACT, MUSCLE, error
 from timing import once, timed
 
 import mckibben as mk
-from mckibben import fleet
-from mckibben.appraise import appraised
-from mckibben.discretise.line import Line
-from mckibben.solver.lockstep import batch_size
-from mckibben.solver.march import march
+from mckibben.discretise.spectral import Line
+from mckibben.measure.many import appraised
+from mckibben.solver.batch import march
+from mckibben.solver.newton import batch_size
+from mckibben.sweeps import batches
+from mckibben.sweeps.groups import Group, groups
+from mckibben.sweeps.plan import plan
 
 CURVES, POINTS, TOLERANCE, UNKNOWNS = 512, 21, 1e-4, 12
 TEST = mk.Isometric(length="115 mm", pressure="0 to 1 bar", points=POINTS)
-OVER = {
-    "braid.angle": {"from": "33 deg", "to": "41 deg", "points": 32},
-    "chamber.thickness": {"from": "0.6 mm", "to": "1.8 mm", "points": 16},
+GRID = {
+    "braid.angle": (np.radians([33.0, 41.0]), 32),
+    "chamber.thickness": ([0.6e-3, 1.8e-3], 16),
 }
+"""Fields, their ends in SI, and how many values of each."""
+OVER = {name: {"from": float(ends[0]), "to": float(ends[1]), "points": n} for name, (ends, n) in GRID.items()}
 THREADS = 2
 
 
-def asks(count: int = CURVES) -> list[fleet.Ask]:
+def designs(count: int = CURVES) -> Group:
     """The muscles of the sweep, as a batch takes them."""
-    angles, walls = np.radians(np.linspace(33.0, 41.0, 32)), np.linspace(0.6e-3, 1.8e-3, 16)
-    found = []
-    for angle in angles:
-        muscle = MUSCLE.replace("braid.angle", float(angle))
-        found += [fleet.ask(muscle.replace("chamber.thickness", float(wall)), TEST) for wall in walls]
-    some = [one for one in found if one is not None]
-    assert len(some) == CURVES
-    return (some * (1 + count // CURVES))[:count]
+    over = {name: np.linspace(*ends, n).tolist() for name, (ends, n) in GRID.items()}
+    (group,) = groups(plan(MUSCLE, TEST, over, tolerance=TOLERANCE, chunk=CURVES).piece(0))
+    assert len(group) == CURVES
+    return group.take(np.arange(count) % CURVES)
 
 
-def captured(some: list[fleet.Ask], size: int, tolerance: float) -> list[tuple[Any, ...]]:
-    """What `fleet` gives the compiled functions, batch by batch: arguments of `march`, and those of `appraised`."""
-    calls: list[tuple[Any, ...]] = []
-    line = Line(size)
+def captured(group: Group, tolerance: float = TOLERANCE) -> dict[str, list[tuple[Any, ...]]]:
+    """What batches give the compiled functions, call by call."""
+    calls: dict[str, list[tuple[Any, ...]]] = {"march": [], "appraised": []}
+    before = batches.march, batches.appraised
 
-    def keep_march(*args: Any) -> Any:
-        calls.append(args)
-        return march(*args)
+    def keep(name: str, function: Any) -> Any:
+        def call(*args: Any) -> Any:
+            calls[name].append(args)
+            return function(*args)
 
-    def keep_appraised(*args: Any) -> Any:
-        calls[-1] = (calls[-1], args) if not isinstance(calls[-1][0], tuple) else calls[-1]
-        return appraised(*args)
+        return call
 
-    before = fleet.march, fleet.appraised
-    fleet.march, fleet.appraised = keep_march, keep_appraised
+    batches.march, batches.appraised = keep("march", march), keep("appraised", appraised)
     try:
-        b = np.concatenate([fleet._placement(part) for part in fleet._split(some, fleet.MOST)])
-        for part in fleet._split(list(range(len(some))), batch_size(line.unknowns)):
-            curves = fleet._on([some[k] for k in part], b[part], line, tolerance)
-            assert all(curve is not None for curve in curves)
+        batches.solve(group, tolerance)
     finally:
-        fleet.march, fleet.appraised = before
+        batches.march, batches.appraised = before
     return calls
 
 
@@ -75,10 +70,10 @@ def together(function: Any, calls: list[tuple[Any, ...]], threads: int) -> Any:
 
 def measure() -> list[dict[str, Any]]:
     """Rows with curves per second."""
-    some = asks()
-    cold, calls = once(lambda: captured(some[:1], UNKNOWNS, TOLERANCE)), captured(some, UNKNOWNS, TOLERANCE)
-    paths, states = [call[0] for call in calls], [call[1] for call in calls]
-    off = accuracy(some)
+    group = designs()
+    cold, calls = once(lambda: captured(group.take(np.zeros(1, int)))), captured(group)
+    paths, states = calls["march"], calls["appraised"]
+    off = accuracy(group)
     rows = []
     for name, function, given in (("solving", march, paths), ("appraising", appraised, states)):
         for threads in (1, THREADS):
@@ -88,7 +83,7 @@ def measure() -> list[dict[str, Any]]:
     times = timed(lambda: mk.sweep(MUSCLE, TEST, OVER, tolerance=TOLERANCE, workers=0), 3)
     rows.append(row("512 curves, mk.sweep in full, one process", times, off))
     times = timed(lambda: mk.sweep(MUSCLE, TEST, OVER, workers=0), 2)
-    rows.append(row("512 curves, mk.sweep at 1e-6, one process", times, accuracy(some, 1e-6)))
+    rows.append(row("512 curves, mk.sweep at 1e-6, one process", times, accuracy(group, 1e-6)))
     systems = np.mean([int(np.asarray(march(*path).systems).max()) for path in paths])
     return [*rows, {**floor(UNKNOWNS, POINTS + systems), "systems_per_curve": float(POINTS + systems)}]
 
@@ -99,17 +94,15 @@ def row(name: str, times: dict[str, Any], off: float) -> dict[str, Any]:
     }  # fmt: skip
 
 
-def accuracy(some: list[fleet.Ask], tolerance: float = TOLERANCE) -> float:
+def accuracy(group: Group, tolerance: float = TOLERANCE) -> float:
     """Largest error of every 37th curve against single runs on many unknowns."""
-    worst = 0.0
-    for one, curve in list(zip(some, fleet.solve_together(some, tolerance), strict=True))[::37]:
-        assert curve is not None
-        p = one.p
-        muscle = MUSCLE.replace("braid.angle", float(p.theta0)).replace(
-            "chamber.thickness", float(np.sqrt(p.R0**2 + p.A0 / np.pi) - p.R0)
-        )
-        exact = mk.run(muscle, TEST, tolerance=1e-9).force
-        worst = max(worst, error(curve.numbers["force"], exact))
+    worst, some = 0.0, group.take(np.arange(0, len(group), 37))
+    forces = {int(k): one.numbers["force"][d] for one in batches.solve(some, tolerance)
+              for d, k in enumerate(one.group.index)}  # fmt: skip
+    for d, k in enumerate(some.index.tolist()):
+        angle, wall = (float(x) for x in (some.p.theta0[d], np.sqrt(some.p.R0[d] ** 2 + some.p.A0[d] / np.pi)))
+        muscle = MUSCLE.replace("braid.angle", angle).replace("chamber.thickness", wall - float(some.p.R0[d]))
+        worst = max(worst, error(forces[k], mk.run(muscle, TEST, tolerance=1e-9).force))
     return worst
 
 

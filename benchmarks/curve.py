@@ -13,29 +13,28 @@ from timing import timed
 
 import mckibben as mk
 from mckibben.discretise.bspline import Spline
-from mckibben.discretise.line import Line
-from mckibben.model.chamber import law_of
+from mckibben.discretise.placement import crowding
+from mckibben.discretise.spectral import Line
 from mckibben.model.cylinder import cylinder_angle, cylinder_force
 from mckibben.model.parameters import parameters
 from mckibben.model.textbook import virtual_work_force
-from mckibben.solver.direct import find
-from mckibben.solver.equilibrium import Held
+from mckibben.solver.find import find
 from mckibben.solver.follow import follow, padded
+from mckibben.solver.held import Held, rows_of, targets_of
 from mckibben.solver.path import trace
-from mckibben.solver.placement import crowding
-from mckibben.solver.problem import LENGTH, VOLUME, Problem, Space
+from mckibben.solver.problem import Problem
 
 LONG, PRESSURES = 0.115, np.linspace(0.0, 1e5, 21)
 MUSCLE = mk.presets.paper()
-P, LAW = parameters(MUSCLE), law_of(MUSCLE)
+P = parameters(MUSCLE)
 PATH = [Held.of(length=LONG, pressure=float(pressure)) for pressure in PRESSURES]
 EXACT = 96
 
 
 def problem(basis: Line | Spline) -> Problem:
     """The muscle on a discretisation, with points crowded as `run` does."""
-    b = crowding(LAW, P, np.full(1, LONG), np.full(1, np.nan), np.full(1, PRESSURES[-1]))
-    return Problem.of(Space(basis, LAW), P, b)
+    b = crowding(P, np.full(1, LONG), np.full(1, np.nan), np.full(1, PRESSURES[-1]))
+    return Problem.of(basis, P, b)
 
 
 def reference() -> np.ndarray:
@@ -43,7 +42,7 @@ def reference() -> np.ndarray:
     on = problem(Line(EXACT))
     track = trace(on, PATH, tolerance=1e-10)
     assert track.reached == len(PATH)
-    return track.loads[:, 1] * on.load_unit[1]
+    return track.loads[:, 0] * on.load_unit[1]
 
 
 def error(force: np.ndarray, exact: np.ndarray) -> float:
@@ -55,17 +54,17 @@ def following(basis: Line | Spline, tolerance: float, exact: np.ndarray, name: s
     """The compiled following alone."""
     on = problem(basis)
     first = find(on, PATH[0])
-    w = np.concatenate([first.u, first.loads[[LENGTH, VOLUME]]])
-    targets = padded(np.array([held.targets(on) for held in PATH]))
-    count, close, select = np.asarray(len(PATH)), np.asarray(tolerance), PATH[0].select()
+    own, which = rows_of(PATH[0].names, on.loads)
+    targets = padded(targets_of(PATH, on.unit, on.loads))
+    count, close = np.asarray(len(PATH)), np.asarray(tolerance)
 
     def call() -> Any:
-        return jax.block_until_ready(follow(on.space, on.p, on.b, w, select, targets, count, close))
+        return jax.block_until_ready(follow((on.basis, own), on.p, on.b, first.state, which, targets, count, close))
 
     times = timed(call, 15)
     track = call()
     assert int(track.good) == len(PATH)
-    forces = np.asarray(track.w[: len(PATH), -2]) * on.load_unit[1]
+    forces = np.asarray(track.state.loads[: len(PATH), 0]) * on.load_unit[1]
     return {"name": name, "states": len(PATH), "error": error(forces, exact), **times}
 
 
@@ -75,7 +74,7 @@ def searching(basis: Line | Spline, tolerance: float, exact: np.ndarray, name: s
     times = timed(lambda: trace(on, PATH, tolerance=tolerance), 5)
     track = trace(on, PATH, tolerance=tolerance)
     assert track.reached == len(PATH)
-    return {"name": name, "states": len(PATH), "error": error(track.loads[:, 1] * on.load_unit[1], exact), **times}
+    return {"name": name, "states": len(PATH), "error": error(track.loads[:, 0] * on.load_unit[1], exact), **times}
 
 
 def measure(exact: np.ndarray) -> list[dict[str, Any]]:
@@ -104,7 +103,7 @@ def measure(exact: np.ndarray) -> list[dict[str, Any]]:
 
 def measure_others(exact: np.ndarray) -> list[dict[str, Any]]:
     """The paper's discretisation through the same solver, and the closed forms."""
-    scalar = jax.vmap(lambda theta, pressure: cylinder_force(theta, pressure, P, LAW))
+    scalar = jax.vmap(lambda theta, pressure: cylinder_force(theta, pressure, P))
     forms = {
         "cylinder with stored energy": scalar,
         "cylinder formula, Eq. (31)": lambda theta, pressure: virtual_work_force(theta, pressure, P),

@@ -14,6 +14,7 @@ from scipy.optimize import NonlinearConstraint, minimize
 from timing import once
 
 from mckibben.discretise.bspline import Spline
+from mckibben.solver.held import targets_of
 from mckibben.solver.problem import LENGTH, VOLUME
 
 sys.path.insert(0, str(Path(__file__).parent.parent / "tests"))
@@ -24,9 +25,9 @@ from test_hamiltonian import Half
 def trust_constr() -> list[float]:
     """Forces [N] of the curve; each state from the one before."""
     on = problem(Spline(43))
-    u, forces = np.zeros(on.space.basis.unknowns), []
+    u, forces = np.zeros(on.basis.unknowns), []
     for held in PATH:
-        length, pressure = held.targets(on)
+        length, pressure = targets_of((held,), on.unit, on.loads)[0]
 
         def energy(u: np.ndarray, pressure: float = pressure) -> float:
             totals = on.evaluate(u).totals

@@ -15,13 +15,12 @@ from curve import LONG, MUSCLE, problem
 from timing import once, timed
 
 import mckibben as mk
-from mckibben import cache
-from mckibben.discretise.line import Line
-from mckibben.solver.direct import find
-from mckibben.solver.equilibrium import Held
+from mckibben.compiled import folder as cache
+from mckibben.discretise.spectral import Line
+from mckibben.solver.batch import march
+from mckibben.solver.find import find
 from mckibben.solver.follow import follow, padded
-from mckibben.solver.march import march
-from mckibben.solver.problem import LENGTH, VOLUME
+from mckibben.solver.held import Held, rows_of, targets_of
 
 UNKNOWNS, STATES, TOGETHER = (8, 12, 16, 24, 32, 48, 64, 96), (6, 21, 101, 401), (1, 4, 16, 64)
 COLD, DESIGNS = (1_000, 2), ((1_000, 1), (1_000, 2), (10_000, 1), (10_000, 2), (100_000, 2))
@@ -33,12 +32,12 @@ def following(unknowns: int, states: int) -> dict[str, Any]:
     on = problem(Line(unknowns))
     path = [Held.of(length=LONG, pressure=float(pressure)) for pressure in np.linspace(0.0, 1e5, states)]
     first = find(on, path[0])
-    w = np.concatenate([first.u, first.loads[[LENGTH, VOLUME]]])
-    targets = padded(np.array([held.targets(on) for held in path]))
-    count, close, select = np.asarray(states), np.asarray(1e-6), path[0].select()
+    own, which = rows_of(path[0].names, on.loads)
+    targets = padded(targets_of(path, on.unit, on.loads))
+    count, close = np.asarray(states), np.asarray(1e-6)
 
     def call() -> Any:
-        return jax.block_until_ready(follow(on.space, on.p, on.b, w, select, targets, count, close))
+        return jax.block_until_ready(follow((on.basis, own), on.p, on.b, first.state, which, targets, count, close))
 
     assert int(call().good) == states
     return {"unknowns": unknowns, "states": states, **timed(call, 9)}
@@ -46,13 +45,11 @@ def following(unknowns: int, states: int) -> dict[str, Any]:
 
 def together() -> list[dict[str, Any]]:
     """Curves that advance in step, per curve."""
-    (path, _), rows = batch.captured(batch.asks(64), batch.UNKNOWNS, batch.TOLERANCE)[0], []
-    line, law, designs, select, rest, targets, count = path
+    (path,), rows = batch.captured(batch.designs(64))["march"], []
+    basis, on, which, rest, targets, count = path
     for size in TOGETHER:
-        some = jax.tree.map(lambda leaf, size=size: leaf[:size], (designs, rest, targets))
-        times = timed(
-            lambda some=some: jax.block_until_ready(march(line, law, some[0], select, some[1], some[2], count)), 9
-        )
+        some = jax.tree.map(lambda leaf, size=size: leaf[:size], (on, rest, targets))
+        times = timed(lambda some=some: jax.block_until_ready(march(basis, some[0], which, some[1], some[2], count)), 9)
         rows.append({"muscles": size, **{k: v / size if k != "repeats" else v for k, v in times.items()}})
     return rows
 
@@ -103,7 +100,7 @@ def sweeps() -> list[dict[str, Any]]:
 
 def measure() -> dict[str, Any]:
     """Everything."""
-    cache.use()
+    cache.ready()
     return {
         "unknowns": [following(unknowns, 21) for unknowns in UNKNOWNS],
         "states": [following(24, states) for states in STATES],

@@ -11,7 +11,7 @@ from pathlib import Path
 
 from PIL import Image
 
-from mckibben.app.reproduce import PICTURES, reproduce
+from mckibben.paper.reproduce import PICTURES, reproduce
 
 HERE = Path(__file__).parent / "pictures"
 WIDEST = 1000

@@ -6,15 +6,15 @@ The environment is set before anything imports JAX or the package, which is why 
 import os
 from pathlib import Path
 
-CACHE = Path(__file__).parent.parent / ".pytest_cache" / "jax"
+CACHE = Path(__file__).parent.parent / ".pytest_cache" / "kernels"
 
 os.environ["JAX_PLATFORMS"] = "cpu"
 os.environ["JAX_NUMPY_DTYPE_PROMOTION"] = "strict"
 os.environ["MPLBACKEND"] = "Agg"
-# Compiled functions are kept between runs. One folder for each xdist worker: JAX does not write the files atomically,
-# so a worker could read another's half-written one.
-os.environ.setdefault("JAX_COMPILATION_CACHE_DIR", str(CACHE / os.environ.get("PYTEST_XDIST_WORKER", "main")))
-os.environ.setdefault("JAX_PERSISTENT_CACHE_MIN_COMPILE_TIME_SECS", "0.2")
+# Kernels are kept between runs, in one folder for all xdist workers, and compiled with the least optimisation: a test
+# calls them a few times.
+os.environ.setdefault("MCKIBBEN_CACHE", str(CACHE))
+os.environ.setdefault("MCKIBBEN_COMPILE", "quick")
 
 from beartype import BeartypeConf, beartype
 from hypothesis import HealthCheck, settings

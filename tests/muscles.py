@@ -6,18 +6,17 @@ from typing import NamedTuple
 import numpy as np
 from hypothesis import strategies as st
 
-from mckibben import presets, spec
-from mckibben.model.chamber import law_of
-from mckibben.model.parameters import Law, Parameters, parameters
+from mckibben import spec
+from mckibben.model.parameters import Parameters, parameters
+from mckibben.spec import presets
 
 MAGIC = math.atan(math.sqrt(0.5))
 """The magic angle [rad], from the parallels."""
 
 
-def reference() -> tuple[Parameters, Law]:
-    """Numbers in SI and law of the muscle of the theory page's reference values."""
-    muscle = presets.reference()
-    return parameters(muscle), law_of(muscle)
+def reference() -> Parameters:
+    """Numbers in SI of the muscle of the theory page's reference values."""
+    return parameters(presets.reference())
 
 
 class Drawn(NamedTuple):
@@ -45,7 +44,7 @@ class Drawn(NamedTuple):
         )
 
     def parameters(self) -> Parameters:
-        """Numbers of the muscle; its law is `mooney_rivlin`."""
+        """Numbers of the muscle, with a Mooney-Rivlin chamber."""
         return parameters(self.muscle())
 
 

@@ -2,9 +2,9 @@
 
 import numpy as np
 
-from mckibben.result import Result, about, dataset
+from mckibben.results.result import Result, about, dataset
+from mckibben.results.variables import FIELDS, STEP
 from mckibben.spec import Muscle, Test
-from mckibben.variables import FIELDS, STEP
 
 
 def made(muscle: Muscle, test: Test, reached: int) -> Result:

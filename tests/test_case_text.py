@@ -9,10 +9,12 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from texts import CASE
 
-from mckibben import presets, spec
+from mckibben import spec
 from mckibben.files.case import read_case
-from mckibben.spec import SpecError
+from mckibben.spec import SpecError, presets
 from mckibben.spec.text import Case, apply_overrides, from_mapping, to_mapping, to_toml
+
+pytestmark = pytest.mark.spec
 
 PROPERTY = settings(max_examples=50, deadline=None, derandomize=True, database=None)
 GOOD = tomllib.loads(CASE)

@@ -7,6 +7,8 @@ from typer.testing import CliRunner
 import mckibben as mk
 from mckibben.app.cli import app
 
+pytestmark = pytest.mark.experiments
+
 REFERENCE = mk.presets.reference()
 ATMOSPHERE = 101325.0
 
@@ -102,7 +104,7 @@ def test_the_command_saves_what_was_reached_before_ctrl_c(tmp_path, monkeypatch)
     def interrupted(*_):
         raise KeyboardInterrupt
 
-    monkeypatch.setattr("mckibben.solver.path._follow", interrupted)
+    monkeypatch.setattr("mckibben.solver.path.follow_to", interrupted)
     case, out = tmp_path / "case.toml", tmp_path / "out.nc"
     case.write_text('[muscle]\npreset = "reference"\n[test]\nkind = "blocked-force"\npressure = "0 to 1 bar"\n')
     done = CliRunner().invoke(app, ["run", str(case), "-o", str(out), "--quiet"])

@@ -2,13 +2,15 @@
 
 import numpy as np
 import pytest
+from readings import recovered
 
 import mckibben as mk
-from mckibben.experiment import Bench
-from mckibben.recover import recover
-from mckibben.solver.direct import find
-from mckibben.solver.equilibrium import Equilibrium, Held
-from mckibben.survey import error_estimate
+from mckibben.solver.bench import Bench
+from mckibben.solver.equilibrium import Equilibrium
+from mckibben.solver.find import find
+from mckibben.solver.held import Held
+
+pytestmark = pytest.mark.solver
 
 REFERENCE = mk.presets.reference()
 STIFF = REFERENCE.replace("braid.fibre", mk.Fibre(B1=57.5e-6, B2=57.5e-6, B3=41e-6))
@@ -24,7 +26,7 @@ def state(muscle: mk.Muscle, length: float, size: int, b: float = 2.0, discretis
 
 
 def estimate(found: Equilibrium) -> float:
-    return float(error_estimate(recover(found.problem, found.u[None], found.loads[None]))[0])
+    return float(recovered(found).error[0])
 
 
 @pytest.mark.parametrize("length", [0.115, 0.055])

@@ -1,20 +1,25 @@
 """What the assembler gives (totals, gradients, tangents) against another quadrature and central differences."""
 
 import jax
+import jax.numpy as jnp
 import numpy as np
 import pytest
+from readings import profile
 from scipy.interpolate import CubicSpline
 
 import mckibben as mk
 from mckibben.discretise.bspline import Spline
-from mckibben.discretise.line import Line
-from mckibben.experiment import Bench
-from mckibben.model.energy import quantities
-from mckibben.recover import angle_force
-from mckibben.solver.direct import find
-from mckibben.solver.equilibrium import Held
-from mckibben.solver.problem import CLOSURE, Problem, Space
-from mckibben.solver.stability import null_space, stiffness
+from mckibben.discretise.fields import place, variables
+from mckibben.discretise.spectral import Line
+from mckibben.model.energy import lagrangian, stored, works
+from mckibben.model.point import Point
+from mckibben.solver.bench import Bench
+from mckibben.solver.find import find
+from mckibben.solver.held import Held
+from mckibben.solver.problem import CLOSURE, Problem
+from mckibben.solver.stability import null_space, of_states
+
+pytestmark = pytest.mark.solver
 
 REFERENCE = mk.presets.reference()
 GENT = REFERENCE.replace("chamber.law", mk.Gent(mu="0.1 MPa", Jm=8.0))
@@ -35,19 +40,19 @@ OFFSETS, WEIGHTS = np.array([-3, -2, -1, 1, 2, 3]), np.array([-1, 9, -45, 45, -9
 
 def problem_of(muscle: mk.Muscle, basis: Line | Spline) -> Problem:
     bench = Bench.of(muscle)
-    return Problem.of(Space(basis, bench.law), bench.p, CROWDING)
+    return Problem.of(basis, bench.p, CROWDING)
 
 
 def change(problem: Problem, du: np.ndarray) -> float:
     """Largest change of the slope and of the braid angle [rad] about the cylinder."""
-    theta, psi, _ = problem.space.basis.profile(problem.p, problem.b, du[None])
+    theta, psi, _ = profile(problem, du, 101)
     return max(float(np.abs(psi).max()), float(np.abs(theta - problem.p.theta0).max()))
 
 
 def wave(problem: Problem, seed: int, power: int = 1) -> np.ndarray:
     """Random unknowns, short waves less, that change slope or angle by 0.4 rad: far from straight and flat."""
     random = np.random.default_rng(seed)
-    m = problem.space.basis.unknowns
+    m = problem.basis.unknowns
     u = 1e-4 * random.normal(size=m) / (1.0 + np.arange(m)) ** power
     for _ in range(8):  # slopes of splines are not quite linear in the unknowns
         u = u * 0.4 / change(problem, u)
@@ -75,13 +80,14 @@ def test_totals(case: str) -> None:
     """Energy, length, volume and closure again, from the profile at many output points."""
     muscle, basis = CASES[case]
     problem = problem_of(muscle, basis)
-    p, law = problem.p, problem.space.law
-    density = jax.vmap(lambda *state: quantities(*state, p, law))
+    p, half = problem.p, basis.half
+    density = jax.vmap(lambda *x: jnp.stack([stored(Point(*x), p), *works(Point(*x), p)]))
     for seed in range(3):
         u = wave(problem, seed, power=3)
-        v = basis.nodes(p, problem.b, 2001)
-        densities = density(*(field[0] for field in basis.profile(p, problem.b, u[None], 2001)))
-        expected = CubicSpline(v, np.asarray(densities)).integrate(0.0, float(p.H0)) / problem.unit
+        x = basis.sampling(1001).x
+        v = np.asarray(basis.coordinate(x, p, problem.b))
+        densities = density(*profile(problem, u, 1001))
+        expected = CubicSpline(v, np.asarray(densities)).integrate(0.0, v[-1]) * (2.0 if half else 1.0) / problem.unit
         found = np.asarray(problem.evaluate(u).totals)
         # the half line's own closure means nothing: odd slopes close by themselves
         n = CLOSURE if isinstance(basis, Line) and basis.half else CLOSURE + 1
@@ -96,7 +102,7 @@ def test_antisymmetric_tangent_is_the_even_block_of_the_full_line(ends: str) -> 
     half, full = problem_of(muscle, Line(24, ends)), problem_of(muscle, Line(48, ends, "all"))
     held = Held.of(length=0.100, pressure=1e5)
     one, two = find(half, held), find(full, held)
-    small = stiffness(half.space, half.p, half.b, one.u[None], one.loads[None])
+    small = of_states(half, one.u[None], one.loads[None])
     big = full.evaluate(two.u)
     odd, even = np.arange(1, 48, 2), np.arange(0, 48, 2)
     if ends == "free":  # its angle is the last unknown
@@ -104,12 +110,12 @@ def test_antisymmetric_tangent_is_the_even_block_of_the_full_line(ends: str) -> 
     else:
         np.testing.assert_allclose(big.gradients[CLOSURE, even], 2.0 * small.closure[0], atol=1e-13)
     np.testing.assert_allclose(two.u[odd], one.u, atol=1e-13)
-    signs = np.concatenate([[1.0], -two.loads[1:]])
+    signs = np.concatenate([[1.0], -two.loads, np.zeros(3 - len(two.loads))])
     keep, K = null_space(np.asarray(small.closure)), np.tensordot(signs, np.asarray(big.tangents), 1)
     antisymmetric = keep.T @ np.asarray(small.antisymmetric[0]) @ keep
     found = keep.T @ K[np.ix_(even, even)] @ keep
     np.testing.assert_allclose(found, antisymmetric, rtol=0.0, atol=2e-11 * np.abs(antisymmetric).max())
-    symmetric = np.asarray(small.tangent[0])
+    symmetric = np.asarray(small.stiffness[0])
     np.testing.assert_allclose(K[np.ix_(odd, odd)], symmetric, rtol=0.0, atol=5e-11 * np.abs(symmetric).max())
     assert np.abs(keep.T @ K[np.ix_(even, odd)]).max() < 1e-14 * np.abs(K).max()
 
@@ -119,7 +125,12 @@ def test_closing_moment_is_the_costate_at_the_fitting() -> None:
     half, full = problem_of(REFERENCE, Line(24)), problem_of(REFERENCE, Line(48, modes="all"))
     held = Held.of(length=0.100, pressure=1e5)
     state = find(half, held)
-    profile = half.space.basis.profile(half.p, half.b, state.u[None])
-    slope = angle_force(half.space.law, half.p, *profile, np.array([state.force]), np.array([state.pressure]))
-    costate = 0.5 * float(np.asarray(slope)[0] @ half.mesh.weights)
-    assert costate / float(half.unit[0]) == pytest.approx(find(full, held).closure, rel=1e-12)
+    on = place(half.basis, half.p, half.b)
+    theta, psi, kappa = (getattr(part, "value", part) for part in variables(half.basis, on, state.u))
+
+    def density(theta: jax.Array, psi: jax.Array, kappa: jax.Array) -> jax.Array:
+        return lagrangian(Point(theta, psi, kappa), half.p, state.force, state.pressure)
+
+    slope = jax.vmap(jax.grad(density))(theta, psi, kappa)
+    costate = 0.5 * float(slope @ (half.basis.operators().weights * on.jacobian))
+    assert costate / float(half.unit[0]) == pytest.approx(find(full, held).loads[2], rel=1e-12)

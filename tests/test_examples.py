@@ -11,6 +11,8 @@ from typer.testing import CliRunner
 import mckibben as mk
 from mckibben.app.cli import app
 
+pytestmark = pytest.mark.docs
+
 EXAMPLES = Path(__file__).parent.parent / "examples"
 CASES = sorted(EXAMPLES.glob("*.toml"))
 HALF_A_DIGIT = 6e-4

@@ -17,6 +17,8 @@ from mckibben import spec
 from mckibben.model import elliptic
 from mckibben.model.extension import full_extension
 
+pytestmark = pytest.mark.model
+
 angles = between(math.radians(5.0), math.radians(85.0))
 
 # Radius, length [mm], angle [rad], full extension [mm], from the independent solver behind the theory page's numbers.

@@ -17,10 +17,12 @@ import xarray as xr
 from results import made
 
 import mckibben as mk
-from mckibben.files import atomic
-from mckibben.result import Result
+from mckibben import disk
+from mckibben.results.result import Result
+from mckibben.results.variables import FIELDS, VARIABLES
 from mckibben.spec.text import muscle_from_mapping, test_from_mapping
-from mckibben.variables import FIELDS, VARIABLES
+
+pytestmark = pytest.mark.files
 
 PAPER = mk.presets.paper()
 CURVE = mk.Isobaric(pressure="1 bar", length="118 mm to 130 mm", points=5)
@@ -188,9 +190,9 @@ def test_a_failed_write_leaves_the_old_file(tmp_path: Path, monkeypatch: pytest.
     def full(*_: object, **__: object) -> None:
         raise OSError(errno.ENOSPC, os.strerror(errno.ENOSPC))
 
-    monkeypatch.setattr(atomic.os, broken, full)
+    monkeypatch.setattr(disk.os, broken, full)
     with pytest.raises(mk.SpecError, match="cannot be written: No space left on device"):
-        atomic.write(path, b"new", force=True)
+        disk.write(path, b"new", force=True)
     assert path.read_bytes() == b"old"
     assert os.listdir(tmp_path) == ["out.nc"]
 
@@ -202,16 +204,16 @@ def test_an_interrupted_write_leaves_the_old_file(tmp_path: Path, monkeypatch: p
     def interrupt(*_: object) -> None:
         raise KeyboardInterrupt
 
-    monkeypatch.setattr(atomic.os, "fsync", interrupt)
+    monkeypatch.setattr(disk.os, "fsync", interrupt)
     with pytest.raises(KeyboardInterrupt):
-        atomic.write(path, b"new", force=True)
+        disk.write(path, b"new", force=True)
     assert path.read_bytes() == b"old"
     assert os.listdir(tmp_path) == ["out.nc"]
 
 
 WRITER = """
 import sys
-from mckibben.files.atomic import write
+from mckibben.disk import write
 turn = 0
 while True:
     turn += 1
@@ -240,12 +242,70 @@ def test_links_and_permissions_stay(tmp_path: Path) -> None:
     real.write_bytes(b"old")
     real.chmod(0o640)
     link.symlink_to(real)
-    atomic.write(link, b"new", force=True)
+    disk.write(link, b"new", force=True)
     assert link.is_symlink()
     assert real.read_bytes() == b"new"
     assert real.stat().st_mode & 0o777 == 0o640
     mask = os.umask(0o027)
     try:
-        assert atomic.write(tmp_path / "fresh.nc", b"").stat().st_mode & 0o777 == 0o640
+        assert disk.write(tmp_path / "fresh.nc", b"").stat().st_mode & 0o777 == 0o640
     finally:
         os.umask(mask)
+
+
+@pytest.mark.skipif(os.name != "posix", reason="pipes, devices and links")
+@pytest.mark.parametrize("kind", ["pipe", "link to a pipe", "link to a device", "link to nothing", "link to a folder"])
+def test_only_regular_files_are_replaced(tmp_path: Path, incomplete: Result, kind: str) -> None:
+    path, pipe = tmp_path / "out.nc", tmp_path / "pipe"
+    os.mkfifo(pipe)
+    (tmp_path / "folder").mkdir()
+    if kind == "pipe":
+        path = pipe.rename(path)
+    else:
+        goal = {"pipe": pipe, "device": Path(os.devnull), "nothing": tmp_path / "gone", "folder": tmp_path / "folder"}
+        path.symlink_to(goal[kind.rpartition(" ")[2]])
+    before, there = path.lstat(), sorted(os.listdir(tmp_path))
+    for force in (False, True):
+        with pytest.raises(mk.SpecError, match="is a folder" if "folder" in kind else "is no regular file"):
+            mk.save(incomplete, path, force=force)
+    with pytest.raises(OSError, match="is no regular file"):
+        disk.replace(path, b"")
+    assert (path.lstat(), sorted(os.listdir(tmp_path))) == (before, there)
+
+
+def test_a_file_that_comes_in_between_stays(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    path = tmp_path / "out.nc"
+    monkeypatch.setattr(disk.os, "fsync", lambda _: path.write_bytes(b"of someone else"))
+    with pytest.raises(mk.SpecError, match="exists"):
+        disk.write(path, b"new")
+    assert path.read_bytes() == b"of someone else"
+    assert os.listdir(tmp_path) == ["out.nc"]
+
+
+def test_what_a_killed_process_left_is_taken_by_the_next(tmp_path: Path) -> None:
+    left = tmp_path / ".c.0.tmp"
+    left.write_bytes(b"half of it, and longer")
+    disk.replace(tmp_path / "c.0", b"whole", alone=True)
+    assert (tmp_path / "c.0").read_bytes() == b"whole"
+    assert os.listdir(tmp_path) == ["c.0"]
+
+
+def test_a_folder_comes_whole_or_not_at_all(tmp_path: Path) -> None:
+    path = tmp_path / "out"
+
+    def fill(text: str, broken: bool = False) -> None:
+        with disk.new_folder(path) as made:
+            made.mkdir()
+            (made / "inside").write_text(text, encoding="utf-8")
+            if broken:
+                raise KeyboardInterrupt
+
+    with pytest.raises(KeyboardInterrupt):
+        fill("never", broken=True)
+    assert os.listdir(tmp_path) == []
+    fill("first")
+    fill("second")
+    with pytest.raises(KeyboardInterrupt):
+        fill("never", broken=True)
+    assert (path / "inside").read_text(encoding="utf-8") == "second"
+    assert os.listdir(tmp_path) == ["out"]

@@ -14,6 +14,8 @@ from typer.testing import CliRunner
 import mckibben as mk
 from mckibben.app.cli import app
 
+pytestmark = pytest.mark.app
+
 GOOD = CASE.replace("115 mm", "100 mm").replace("points = 21", "points = 3")
 JUNK = (
     "\x00",

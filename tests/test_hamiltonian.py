@@ -20,10 +20,12 @@ from cases import CASES, held, muscle
 from scipy.integrate import solve_bvp
 
 import mckibben as mk
-from mckibben.model.chamber import law_of
-from mckibben.model.energy import scales, stored
-from mckibben.model.kinematics import angle_rate, height_rate, volume_rate
-from mckibben.model.parameters import Law, Parameters, parameters
+from mckibben.model.energy import lagrangian, scales
+from mckibben.model.kinematics import angle_rate, height_rate
+from mckibben.model.parameters import Parameters, parameters
+from mckibben.model.point import Point
+
+pytestmark = pytest.mark.solver
 
 TOLERANCE = 1e-6
 """Of the collocation's relative residuals; the force is then good to 1e-9 or better."""
@@ -32,28 +34,27 @@ THETA, PSI, COSTATE, MOMENT, HEIGHT = range(5)
 STATES = [case for case in CASES["reference"] if case["name"] in ("R01", "R03", "R11", "R13", "R18", "R30")]
 
 
-def rates(y: jax.Array, load: jax.Array, p: Parameters, law: Law) -> jax.Array:
+def rates(y: jax.Array, load: jax.Array, p: Parameters) -> jax.Array:
     """d(theta, psi, p, m, z)/dv at one point; load = (F, P); SI units."""
     theta, psi, costate, moment, _ = y
 
-    def lagrangian(theta: Any, psi: Any, kappa: Any) -> Any:
-        loads = load[0] * height_rate(theta, psi, p) + load[1] * volume_rate(theta, psi, p)
-        return stored(theta, psi, kappa, p, law) - loads
+    def density(theta: Any, psi: Any, kappa: Any) -> Any:
+        return lagrangian(Point(theta, psi, kappa), p, load[0], load[1])
 
-    by_kappa = jax.grad(lagrangian, argnums=2)  # linear in kappa, because L is quadratic in it
+    by_kappa = jax.grad(density, argnums=2)  # linear in kappa, because L is quadratic in it
     still = by_kappa(theta, psi, jnp.zeros(()))
     kappa = (moment - still) / (by_kappa(theta, psi, 1.0 / p.R0) - still) / p.R0
-    by_theta, by_psi = jax.grad(lagrangian, argnums=(0, 1))(theta, psi, kappa)
-    a = 1.0 / (p.R0 * jnp.tan(p.theta0))
+    by_theta, by_psi = jax.grad(density, argnums=(0, 1))(theta, psi, kappa)
+    at, a = Point(theta, psi, kappa), 1.0 / (p.R0 * jnp.tan(p.theta0))
     return jnp.stack([
-        angle_rate(psi, p), kappa, by_theta, by_psi + costate * a * jnp.cos(psi), height_rate(theta, psi, p),
+        angle_rate(at, p), kappa, by_theta, by_psi + costate * a * jnp.cos(psi), height_rate(at, p),
     ])  # fmt: skip
 
 
-@partial(jax.jit, static_argnums=0)
-def everywhere(law: Law, p: Parameters, y: jax.Array, load: jax.Array) -> tuple[jax.Array, ...]:
+@jax.jit
+def everywhere(p: Parameters, y: jax.Array, load: jax.Array) -> tuple[jax.Array, ...]:
     """Rates at points (n, 5) and their derivatives by the state and by F."""
-    at = partial(rates, p=p, law=law)
+    at = partial(rates, p=p)
     by_state, by_load = jax.vmap(jax.jacfwd(at, argnums=(0, 1)), (0, None))(y, load)
     return jax.vmap(at, (0, None))(y, load), by_state, by_load[:, :, :1]
 
@@ -62,9 +63,9 @@ class Half:
     """Half of a muscle as a boundary-value problem in x = 2 v/H0, with numbers of order one."""
 
     def __init__(self, m: mk.Muscle, length_held: bool) -> None:
-        self.p, self.law, self.clamped = parameters(m), law_of(m), str(m.ends) == "clamped"
+        self.p, self.clamped = parameters(m), str(m.ends) == "clamped"
         self.length_held, self.half = length_held, 0.5 * float(self.p.H0)
-        energy = float(scales(self.p, self.law)[0])
+        energy = float(scales(self.p)[0])
         self.unit, self.force_unit = np.array([1.0, 1.0, energy, energy, self.half]), energy / self.half
 
     def rest(self) -> Any:
@@ -100,7 +101,7 @@ class Half:
         """Rates and their derivatives at n points in units of order one; in chunks, so that one shape is compiled."""
         n = y.shape[1]
         full = np.pad(y.T * self.unit, ((0, -n % CHUNK), (0, 0)), mode="edge").reshape(-1, CHUNK, 5)
-        parts = zip(*(everywhere(self.law, self.p, chunk, load) for chunk in full), strict=True)
+        parts = zip(*(everywhere(self.p, chunk, load) for chunk in full), strict=True)
         rate, by_state, by_force = (np.concatenate(part)[:n] for part in parts)
         scale = self.half / self.unit
         by_state = by_state * scale[:, None] * self.unit

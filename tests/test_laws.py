@@ -9,8 +9,11 @@ import numpy as np
 import pytest
 
 from mckibben import spec
-from mckibben.model.chamber import LAWS, chamber_density, law_of
-from mckibben.model.parameters import constants, parameters
+from mckibben.model.chamber import LAWS, chamber_density, energy_density
+from mckibben.model.parameters import parameters
+from mckibben.model.point import Point
+
+pytestmark = pytest.mark.model
 
 STRETCHES = np.linspace(0.6, 2.5, 39)
 
@@ -44,8 +47,8 @@ def made_of(law: spec.Law) -> spec.Muscle:
 
 def energy(law: spec.Law, load: str) -> Callable[[jax.Array], jax.Array]:
     """Energy density [Pa] as the muscle's chamber computes it, of the stretch in a test."""
-    function, numbers = law_of(made_of(law)), jax.tree.map(lambda x: jnp.asarray(x, float), constants(law))
-    return lambda x: function(*LOADS[load](x), numbers)
+    numbers = parameters(made_of(law)).law
+    return lambda x: energy_density(*LOADS[load](x), numbers)
 
 
 def stress(law: spec.Law, load: str, stretch: np.ndarray = STRETCHES) -> np.ndarray:
@@ -83,7 +86,7 @@ def assert_same(found: np.ndarray, expected: np.ndarray, relative: float) -> Non
 
 
 def test_every_law_is_tested() -> None:
-    assert {type(law) for law in CASES} == set(LAWS) == set(spec.LAWS.values()) - {spec.CustomLaw}
+    assert {type(law) for law in CASES} == set(LAWS) - {spec.CustomLaw} == set(spec.LAWS.values()) - {spec.CustomLaw}
 
 
 @cases
@@ -152,7 +155,7 @@ def test_a_law_of_the_users_own() -> None:
     own = made_of(spec.CustomLaw(function=mine, constants={"modulus": 90e3, "limit": 12.0}))
     built_in = made_of(spec.Gent(mu=90e3, Jm=12.0))
     angles = np.radians(np.linspace(20.0, 60.0, 9))
-    found, expected = ([chamber_density(t, parameters(m), law_of(m)) for t in angles] for m in (own, built_in))
+    found, expected = ([chamber_density(Point.cylinder(t), parameters(m)) for t in angles] for m in (own, built_in))
     assert_same(np.array(found), np.array(expected), 1e-14)
     for load in LOADS:
         assert_same(stress(own.chamber.law, load), stress(built_in.chamber.law, load), 2e-15)
@@ -165,7 +168,7 @@ def test_density_is_that_of_the_wall() -> None:
     hoop, axial = math.cos(theta) / math.cos(0.65), math.sin(theta) / math.sin(0.65)
     one = hoop**2 + axial**2 + (hoop * axial) ** -2 - 3.0
     two = hoop**-2 + axial**-2 + (hoop * axial) ** 2 - 3.0
-    found = float(chamber_density(theta, parameters(muscle), law_of(muscle)))
+    found = float(chamber_density(Point.cylinder(theta), parameters(muscle)))
     assert found == pytest.approx(
         math.pi * ((13.5e-3) ** 2 - (12.5e-3) ** 2) * (50e3 * one + 12e3 * two), rel=1e-14, abs=0.0
     )
@@ -173,7 +176,7 @@ def test_density_is_that_of_the_wall() -> None:
 
 def test_a_bare_braid_has_no_chamber_energy() -> None:
     bare = spec.Muscle(braid=made_of(CASES[0]).braid)
-    p, law = parameters(bare), law_of(bare)
-    assert float(law(1.2, 1.1, 1.0 / (1.2 * 1.1), p.law)) == 0.0
+    p = parameters(bare)
+    assert float(energy_density(1.2, 1.1, 1.0 / (1.2 * 1.1), p.law)) == 0.0
     assert float(p.A0) == 0.0
-    assert float(chamber_density(0.8, p, law)) == 0.0
+    assert float(chamber_density(Point.cylinder(0.8), p)) == 0.0

@@ -1,58 +1,49 @@
-"""The imports of the package against the map in docs/architecture.md.
+"""The imports of the package against docs/architecture.md, which says all there is to enforce: see the top of the page.
 
-A module imports only from lower layers and from what is listed above it in its own layer. Folders named in one row are
-siblings and import nothing from each other; inside such a folder any order goes that has no cycle. Imports in functions
-and under TYPE_CHECKING count too. Only `mckibben/__init__.py` is exempt: it is the public face, and nothing inside the
-package imports from it.
+Imports in functions and under TYPE_CHECKING count too. Only `mckibben/__init__.py` is exempt: it is the public face.
 """
 
 import ast
 import re
+from collections.abc import Iterator
 from graphlib import CycleError, TopologicalSorter
 from pathlib import Path
-from typing import NamedTuple
 
 import pytest
 
+pytestmark = pytest.mark.docs
+
 ROOT = Path(__file__).parent.parent
-MAP = (ROOT / "docs" / "architecture.md").read_text(encoding="utf-8")
+PAGE = (ROOT / "docs" / "architecture.md").read_text(encoding="utf-8")
 SOURCE = ROOT / "src" / "mckibben"
 
 
-class Place(NamedTuple):
-    """Where the map puts a module."""
-
-    layer: int
-    row: int  # order of listing
-    entry: int  # order within the row
-    name: str  # as listed: "spec/muscle.py" or a whole folder, "solver/"
-
-
-def places(page: str) -> list[Place]:
-    """Entries of the page's table, in order: rows that start with a layer number, modules named in the second cell."""
-    rows = re.findall(r"^\|\s*(\d+)\s*\|([^|]*)\|", page, re.MULTILINE)
-    return [
-        Place(int(layer), row, entry, name)
-        for row, (layer, cell) in enumerate(rows)
-        for entry, name in enumerate(re.findall(r"`([^`]+)`", cell))
-    ]
-
-
-def place_of(file: str, table: list[Place]) -> Place | None:
-    """Place of a file given relative to the package. A folder's `__init__.py` follows the folder's last listed file."""
-    exact = [p for p in table if p.name == file]
-    folders = [p for p in table if p.name.endswith("/") and file.startswith(p.name)]
-    inside = [p for p in table if file.endswith("/__init__.py") and p.name.startswith(file.removesuffix("__init__.py"))]
-    if exact or folders:
-        return (exact or folders)[0]
-    if inside:
-        last = inside[-1]
-        return Place(last.layer, last.row, last.entry + 1, file)
-    return None
+def tables(page: str) -> tuple[list[str], dict[str, list[str]]]:
+    """What the page lists, in order (files, and rooms as "spec/"), and what some rooms see only."""
+    listed: list[str] = []
+    promised: dict[str, list[str]] = {}
+    promises = False
+    for line in page.splitlines():
+        cells = [cell.strip() for cell in line.strip("|").split("|")] if line.startswith("|") else []
+        if len(cells) < 2:
+            continue
+        name = re.fullmatch(r"`([\w/]+(?:/|\.py))`", cells[0])
+        if cells[0] in ("room", "module"):
+            promises = cells[1] == "sees only"
+        elif name and promises:
+            promised[name[1]] = re.findall(r"`([^`]+)`", cells[1])
+        elif name:
+            listed.append(name[1])
+    return listed, promised
 
 
-def imports(file: Path, source: Path) -> list[tuple[int, str]]:
-    """(line, imported file relative to the package) of every import of the package's own modules in a file."""
+def room_of(file: str) -> str:
+    """The folder of a file ("spec/"), or the file itself where it lies beside the folders."""
+    return f"{file.partition('/')[0]}/" if "/" in file else file
+
+
+def imports(file: Path, source: Path) -> Iterator[tuple[int, str | None]]:
+    """(line, imported file relative to the package) of every import of the package's own; None where it is relative."""
 
     def resolve(dotted: str) -> str | None:
         parts = dotted.split(".")
@@ -64,137 +55,183 @@ def imports(file: Path, source: Path) -> list[tuple[int, str]]:
                 return candidate.relative_to(source).as_posix()
         return None
 
-    package = [source.name, *file.relative_to(source).parent.parts]
-    found: list[tuple[int, str | None]] = []
     for node in ast.walk(ast.parse(file.read_text(encoding="utf-8"))):
+        names: list[str | None] = []
         if isinstance(node, ast.Import):
-            found += [(node.lineno, resolve(alias.name)) for alias in node.names]
+            names = [resolve(alias.name) or "" for alias in node.names]
         elif isinstance(node, ast.ImportFrom):
-            base = package[: len(package) - node.level + 1] if node.level else []
-            base = ".".join([*base, *(node.module or "").split(".")]).rstrip(".")
+            base = node.module or ""
             # `from package import name`: the submodule of that name, else something that the package's __init__ holds
-            found += [(node.lineno, resolve(f"{base}.{alias.name}") or resolve(base)) for alias in node.names]
+            names = [resolve(f"{base}.{alias.name}") or resolve(base) or "" for alias in node.names]
+            names = [None] if node.level else names
         elif isinstance(node, ast.Call) and node.args and isinstance(node.args[0], ast.Constant):
             called = node.func.attr if isinstance(node.func, ast.Attribute) else getattr(node.func, "id", None)
-            if called in ("import_module", "__import__") and isinstance(node.args[0].value, str):
-                name = node.args[0].value
-                depth = len(name) - len(name.lstrip("."))
-                base = [*package[: len(package) - depth + 1], name.lstrip(".")] if depth else [name]
-                found.append((node.lineno, resolve(".".join(base))))
-    return [(line, target) for line, target in found if target is not None]
+            name = node.args[0].value
+            if called in ("import_module", "__import__") and isinstance(name, str):
+                names = [None if name.startswith(".") else resolve(name) or ""]
+        yield from ((node.lineno, name) for name in names if name != "")  # type: ignore[attr-defined]
+
+
+def circle(graph: dict[str, set[str]]) -> str | None:
+    """A circle in a graph, as text."""
+    try:
+        TopologicalSorter(graph).prepare()
+    except CycleError as error:
+        return " -> ".join(reversed(error.args[1]))
+    return None
 
 
 def violations(source: Path, page: str) -> list[str]:
     """Everything in the package that the page forbids, one sentence each."""
-    table = places(page)
-    graph: dict[str, set[str]] = {}
-    wrong: list[str] = []
+    listed, promised = tables(page)
+    order = {room: place for place, room in enumerate(dict.fromkeys(room_of(name) for name in listed))}
+    files: dict[str, set[str]] = {}
+    rooms: dict[str, set[str]] = {}
+    wrong = [f"{name}: is listed twice" for name in sorted(set(listed)) if listed.count(name) > 1]
+    wrong += [f"{name}: is listed and does not exist" for name in listed if not (source / name).exists()]
+    wrong += [f"{room}: its promise is of no room" for room in promised if room not in order]
+    for place, room in enumerate([room_of(name) for name in listed][1:]):
+        if order[room] < order[room_of(listed[place])]:
+            wrong.append(f"{listed[place + 1]}: is listed apart from its room")
     for file in sorted(source.rglob("*.py")):
         name = file.relative_to(source).as_posix()
         if name == "__init__.py":
             continue
-        here = place_of(name, table)
-        if here is None:
+        room = room_of(name)
+        if name not in listed and not (name.endswith("/__init__.py") and room in order):
             wrong.append(f"{name}: not in the table of docs/architecture.md")
             continue
-        graph[name] = set()
         for line, target in imports(file, source):
-            graph[name].add(target)
-            there = place_of(target, table)
+            here = f"{name}:{line}"
+            if target is None:
+                wrong.append(f"{here} is a relative import")
+                continue
             if target == "__init__.py":
-                wrong.append(f"{name}:{line} imports from the public face, mckibben/__init__.py")
-            elif there is None:
-                continue  # the target itself is reported as missing from the table
-            elif there.layer > here.layer:
-                wrong.append(f"{name}:{line} (layer {here.layer}) imports {target} of the higher layer {there.layer}")
-            elif there.layer == here.layer and there.name != here.name:
-                siblings = there.row == here.row and there.name.endswith("/")
-                if siblings or there > here:
-                    wrong.append(f"{name}:{line} imports {target}, which is not listed above it")
-    try:
-        TopologicalSorter(graph).prepare()
-    except CycleError as error:
-        wrong.append(f"import cycle: {' -> '.join(reversed(error.args[1]))}")
+                wrong.append(f"{here} imports from the public face, mckibben/__init__.py")
+                continue
+            files.setdefault(name, set()).add(target)
+            other = room_of(target)
+            if other == room:
+                continue
+            rooms.setdefault(room, set()).add(other)
+            if order.get(other, -1) > order[room]:
+                wrong.append(f"{here} imports {target}, whose room is below its own")
+            if room in promised and not {other, target} & set(promised[room]):
+                wrong.append(f"{here} imports {target}, but {room} sees only {', '.join(promised[room]) or 'itself'}")
+    for what, graph in (("files", files), ("rooms", rooms)):
+        found = circle(graph)
+        if found:
+            wrong.append(f"circle of {what}: {found}")
     return wrong
 
 
-def test_imports_follow_the_map() -> None:
-    found = violations(SOURCE, MAP)
+def test_the_package_is_as_the_page_says() -> None:
+    found = violations(SOURCE, PAGE)
     assert not found, "\n".join(found)
 
 
-def test_everything_on_the_map_exists() -> None:
-    missing = [p.name for p in places(MAP) if not (SOURCE / p.name).exists()]
-    assert not missing, missing
+def test_the_page_is_read() -> None:
+    listed, promised = tables(PAGE)
+    assert {"units.py", "spec/", "spec/muscle.py", "app/cli.py"} <= set(listed)
+    assert promised["units.py"] == []
+    assert promised["spec/"] == ["units.py"]
 
 
 # The checker itself, on a small house with one fault planted at a time.
 
-PAGE = """
-| layer | module | one concept |
-|---|---|---|
-| 0 | `units.py` | |
-| 0 | `spec/errors.py` | |
-| 0 | `spec/muscle.py` | |
-| 0 | `presets.py` | |
-| 1 | `solver/` | |
-| 2 | `recover.py`, `result.py` | |
-| 3 | `study/`, `view/` | |
+SMALL = """
+| module | one concept |
+|---|---|
+| `units.py` | |
+| `spec/` | |
+| `spec/errors.py` | |
+| `spec/muscle.py` | |
+| `solver/` | |
+| `solver/newton.py` | |
+| `solver/path.py` | |
+| `results/` | |
+| `results/result.py` | |
+| `study/` | |
+| `study/sweep.py` | |
+| `view/` | |
+| `view/plots.py` | |
+
+| room | sees only |
+|---|---|
+| `units.py` | nothing |
+| `view/` | `results/`, `spec/errors.py` |
 """
 SOUND = {
-    "__init__.py": "from .view.plots import plot",
+    "__init__.py": "from mckibben.view.plots import plot",
     "units.py": "import math",
-    "spec/__init__.py": "from .errors import SpecError\nfrom .muscle import Muscle",
+    "spec/__init__.py": "from mckibben.spec.errors import SpecError\nfrom mckibben.spec.muscle import Muscle",
     "spec/errors.py": "from mckibben.units import parse",
-    "spec/muscle.py": "from . import errors\nfrom ..units import parse",
-    "presets.py": "from .spec import Muscle",
-    "solver/__init__.py": "from .path import follow",
-    "solver/path.py": "from .newton import solve",
-    "solver/newton.py": "from .. import spec",
-    "recover.py": "import mckibben.solver.newton",
-    "result.py": "from .recover import tension",
-    "study/sweep.py": "from ..result import Result",
-    "view/plots.py": "from ..result import Result",
+    "spec/muscle.py": "from mckibben.spec import errors\nfrom mckibben.units import parse",
+    "solver/__init__.py": "from mckibben.solver.path import follow",
+    "solver/newton.py": "from mckibben import spec",
+    "solver/path.py": "from mckibben.solver.newton import solve",
+    "results/result.py": "import mckibben.solver.newton",
+    "study/sweep.py": "from mckibben.results.result import Result",
+    "view/plots.py": "from mckibben.results.result import Result\nfrom mckibben.spec.errors import SpecError",
 }
+
+
+def small_house(folder: Path, changed: dict[str, str]) -> Path:
+    source = folder / "mckibben"
+    for name, content in {**SOUND, **changed}.items():
+        (source / name).parent.mkdir(parents=True, exist_ok=True)
+        (source / name).write_text(content, encoding="utf-8")
+    return source
+
+
+BELOW = "whose room is below"
 
 
 @pytest.mark.parametrize(
     ("file", "text", "complaint"),
     [
         ("units.py", "", None),
-        ("spec/errors.py", "from ..solver import newton", "higher layer 1"),
-        ("spec/errors.py", "import mckibben.result as r", "higher layer 2"),
-        ("solver/newton.py", "def f():\n    from ..result import Result", "solver/newton.py:2 (layer 1)"),
-        ("solver/newton.py", "import importlib\nimportlib.import_module('mckibben.result')", "higher layer 2"),
-        (
-            "solver/newton.py",
-            "from importlib import import_module\nimport_module('..result', __package__)",
-            "higher layer",
-        ),
-        (
-            "units.py",
-            "from typing import TYPE_CHECKING\nif TYPE_CHECKING:\n    from . import presets",
-            "not listed above",
-        ),
-        ("spec/errors.py", "from .muscle import Muscle", "not listed above"),
-        ("spec/errors.py", "from . import Muscle", "not listed above"),
-        ("spec/muscle.py", "from ..presets import paper", "not listed above"),
-        ("recover.py", "from .result import Result", "not listed above"),
-        ("view/plots.py", "from ..study.sweep import sweep", "not listed above"),
-        ("solver/newton.py", "from .path import follow", "import cycle"),
-        ("solver/newton.py", "from . import follow", "import cycle"),
+        ("spec/errors.py", "from mckibben.solver import newton", BELOW),
+        ("spec/errors.py", "import mckibben.results.result as r", BELOW),
+        ("solver/newton.py", "def f():\n    from mckibben.results.result import Result", "solver/newton.py:2 imports"),
+        ("solver/newton.py", "import importlib\nimportlib.import_module('mckibben.results.result')", BELOW),
+        ("units.py", "from typing import TYPE_CHECKING\nif TYPE_CHECKING:\n    from mckibben import spec", BELOW),
+        ("spec/errors.py", "from mckibben.view.plots import plot", "circle of rooms"),
+        ("results/result.py", "def f():\n    from mckibben.view import plots", "circle of rooms: "),
+        ("solver/newton.py", "from mckibben.solver.path import follow", "circle of files"),
+        ("solver/newton.py", "from mckibben.solver import follow", "circle of files"),
+        ("spec/errors.py", "def f():\n    from mckibben.spec.muscle import Muscle", "circle of files"),
+        ("view/plots.py", "from mckibben.solver import newton", "view/ sees only results/, spec/errors.py"),
+        ("view/plots.py", "from mckibben.spec.muscle import Muscle", "view/ sees only"),
+        ("view/plots.py", "def f():\n    import mckibben.study.sweep", "view/plots.py:2 imports study/sweep.py, but"),
+        ("view/plots.py", "if TYPE_CHECKING:\n    from mckibben.solver.path import follow", "view/ sees only"),
+        ("units.py", "from mckibben.spec.errors import SpecError", "units.py sees only itself"),
+        ("spec/muscle.py", "from . import errors", "is a relative import"),
+        ("spec/muscle.py", "def f():\n    from ..units import parse", "spec/muscle.py:2 is a relative import"),
+        ("study/sweep.py", "from importlib import import_module\nimport_module('..units', __package__)", "relative"),
         ("solver/newton.py", "from mckibben import plot", "public face"),
         ("helpers.py", "", "helpers.py: not in the table"),
         ("spec/extra.py", "", "spec/extra.py: not in the table"),
+        ("extra/__init__.py", "", "extra/__init__.py: not in the table"),
     ],
 )
 def test_the_checker_sees(tmp_path: Path, file: str, text: str, complaint: str | None) -> None:
-    source = tmp_path / "mckibben"
-    for name, content in {**SOUND, file: text}.items():
-        (source / name).parent.mkdir(parents=True, exist_ok=True)
-        (source / name).write_text(content, encoding="utf-8")
-    found = violations(source, PAGE)
+    found = violations(small_house(tmp_path, {file: text}), SMALL)
     if complaint is None:
         assert found == []
     else:
         assert any(complaint in sentence for sentence in found), found
+
+
+@pytest.mark.parametrize(
+    ("line", "complaint"),
+    [
+        ("| `spec/gone.py` | |", "spec/gone.py: is listed and does not exist"),
+        ("| `units.py` | |", "units.py: is listed twice"),
+        ("| `spec/__init__.py` | |", "spec/__init__.py: is listed apart from its room"),
+        ("\n| room | sees only |\n|---|---|\n| `gone/` | nothing |", "gone/: its promise is of no room"),
+    ],
+)
+def test_the_checker_sees_what_is_wrong_with_the_page(tmp_path: Path, line: str, complaint: str) -> None:
+    page = SMALL.replace("\n\n| room", f"\n{line}\n\n| room")
+    assert complaint in violations(small_house(tmp_path, {}), page)

@@ -7,6 +7,8 @@ from cases import CASES
 
 import mckibben as mk
 
+pytestmark = pytest.mark.experiments
+
 REFERENCE = mk.presets.reference()
 LIMITS = [case for case in CASES["limits_default"] if "P" in case]
 

@@ -7,7 +7,6 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from mckibben import presets
 from mckibben.spec import (
     TESTS,
     BlockedForce,
@@ -19,8 +18,11 @@ from mckibben.spec import (
     Protocol,
     SpecError,
     Step,
+    presets,
 )
 from mckibben.units import UnitError
+
+pytestmark = pytest.mark.spec
 
 PROPERTY = settings(max_examples=50, deadline=None, derandomize=True, database=None)
 MUSCLE = presets.paper()

@@ -9,9 +9,10 @@ import pytest
 
 import mckibben as mk
 from mckibben import spec
-from mckibben.model.chamber import law_of
 from mckibben.model.cylinder import cylinder_force
 from mckibben.model.parameters import parameters
+
+pytestmark = pytest.mark.model
 
 PAPER = mk.presets.paper()
 LAWS = (
@@ -80,7 +81,7 @@ def test_a_choice_or_a_number_of_states_is_another_structure() -> None:
 
 def test_gradient_of_a_muscle_is_a_muscle() -> None:
     def force(muscle: mk.Muscle) -> jax.Array:
-        return cylinder_force(0.8, 1e5, parameters(muscle), law_of(muscle))
+        return cylinder_force(0.8, 1e5, parameters(muscle))
 
     slope = jax.jit(jax.grad(force))(PAPER)
     assert isinstance(slope, mk.Muscle)

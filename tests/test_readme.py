@@ -12,6 +12,8 @@ from typer.testing import CliRunner
 
 from mckibben.app.cli import app
 
+pytestmark = pytest.mark.docs
+
 ROOT = Path(__file__).parent.parent
 README = (ROOT / "README.md").read_text(encoding="utf-8")
 PICTURE = re.compile(r"!\[[^\]]*\]\(([^)#]+)\)")
@@ -72,7 +74,8 @@ def test_commands_of_the_readme_run(tmp_path: Path, monkeypatch: pytest.MonkeyPa
 
 
 def test_case_of_the_readme_is_the_paper_preset(tmp_path: Path) -> None:
-    from mckibben import presets, read_case
+    from mckibben import read_case
+    from mckibben.spec import presets
 
     (case,) = [block for language, block in blocks(README) if language == "toml"]
     path = tmp_path / "case.toml"
@@ -106,7 +109,7 @@ def test_pictures_and_links_lead_somewhere(page: Path) -> None:
             assert anchor in map(slug, headings), link
 
 
-@pytest.mark.parametrize("page", ["tutorial.md", "howto.md"])
+@pytest.mark.parametrize("page", ["tutorial.md", "howto.md", "adding_a_law.md"])
 def test_python_of_the_pages_runs(page: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.chdir(tmp_path)
     text = (ROOT / "docs" / page).read_text(encoding="utf-8")

@@ -7,6 +7,8 @@ from cases import CASES, held, muscle, relative_error
 
 import mckibben as mk
 
+pytestmark = pytest.mark.spec
+
 REFERENCE = pytest.mark.parametrize("case", CASES["reference"], ids=lambda case: case["name"])
 
 

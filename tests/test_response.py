@@ -10,6 +10,8 @@ import pytest
 import mckibben as mk
 from mckibben import spec
 
+pytestmark = pytest.mark.experiments
+
 PAPER = mk.presets.paper()
 TEST = mk.Isometric(length="110 mm", pressure=[2e4, 1e5])
 compiled = jax.jit(mk.response)
@@ -113,10 +115,27 @@ def test_a_state_that_is_not_there_spoils_no_other(by_jit: bool) -> None:
 
 
 def test_tests_without_derivatives_are_refused() -> None:
-    with pytest.raises(mk.SpecError, match=r"step\.gas"):
-        mk.response(PAPER, mk.Step(length="100 mm to 90 mm", gas="isothermal"))
     with pytest.raises(mk.SpecError, match=r"step\.along"):
         mk.response(PAPER, mk.Step(length="100 mm to 90 mm", pressure="1 bar", along="branch"))
+
+
+def test_gas_sealed_in_has_derivatives_like_all_else() -> None:
+    """By the pressure to which it was filled and by the length, against central differences; also inside `jit`."""
+
+    def pressure(filled: Any, length: Any) -> Any:
+        fill = mk.Step(length="85 mm", pressure=filled)
+        return mk.response(PAPER, mk.Protocol([fill, mk.Step(length=length, gas="adiabatic")]))["pressure"][-1]
+
+    at, steps = (1e5, 0.100), (1e2, 1e-4)
+    found = jax.grad(pressure, argnums=(0, 1))(*at)
+    traced = jax.jit(jax.grad(pressure, argnums=(0, 1)))(*at)
+    for k, step in enumerate(steps):
+        near = [pressure(*(x + side * step * (i == k) for i, x in enumerate(at))) for side in (-1, 1)]
+        assert float(found[k]) == pytest.approx(float(near[1] - near[0]) / (2.0 * step), rel=1e-5)
+        assert float(traced[k]) == pytest.approx(float(found[k]), rel=1e-7)
+    test = mk.Protocol([mk.Step(length="85 mm", pressure=1e5), mk.Step(length=0.1, gas="adiabatic")])
+    table = mk.sensitivity(PAPER, test, of="pressure").absolute
+    assert table["pressure"]["test.steps[0].pressure"] == pytest.approx(float(found[0]), rel=1e-9)
 
 
 def test_a_muscle_of_arrays_is_a_batch() -> None:

@@ -5,6 +5,8 @@ import pytest
 
 import mckibben as mk
 
+pytestmark = pytest.mark.experiments
+
 PAPER = mk.presets.paper()
 
 

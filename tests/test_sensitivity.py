@@ -10,16 +10,21 @@ from muscles import MAGIC, seeded
 
 import mckibben as mk
 from mckibben import spec
-from mckibben.experiment import Bench
-from mckibben.model.chamber import law_of
+from mckibben.discretise.fields import place
+from mckibben.measure.read import peak, read
 from mckibben.model.cylinder import cylinder_angle, cylinder_force
 from mckibben.model.parameters import parameters
-from mckibben.observe import OBSERVED, observe, peak
-from mckibben.solver.approach import units
-from mckibben.solver.direct import find
-from mckibben.solver.equilibrium import Equilibrium, Held
+from mckibben.results.variables import OBSERVED
+from mckibben.solver.bench import Bench
+from mckibben.solver.equilibrium import Equilibrium
+from mckibben.solver.find import find
+from mckibben.solver.held import Held, conditions, rows_of, units
 from mckibben.solver.implicit import settle
-from mckibben.solver.problem import Space, bordered
+from mckibben.solver.newton import bordered
+from mckibben.solver.problem import Basis
+from mckibben.solver.system import State, system
+
+pytestmark = pytest.mark.experiments
 
 PAPER, REFERENCE = mk.presets.paper(), mk.presets.reference()
 # Central differences, exact for polynomials of degree 6.
@@ -46,24 +51,33 @@ def state_of(muscle: mk.Muscle, held: dict[str, float]) -> Equilibrium:
     return found
 
 
-def results(space: Space, tree: Any, at: jax.Array, share: jax.Array, b: Any, w: Any, select: Any, anew: bool) -> Any:
+def results(
+    basis: Basis, tree: Any, names: Any, anew: bool, at: jax.Array, share: jax.Array, b: Any, state: State
+) -> Any:
     """Results where numbers and held values are changed to a share of theirs, at w: solved anew, or by `settle`."""
     numbers = at * share
     p = parameters(jax.tree.unflatten(tree, list(numbers[:-2])))
-    targets = numbers[-2:] / (select @ units(space, p))
+    on = place(basis, p, b)
+    size, (own, which) = units(on.unit), rows_of(names, 2)
+    targets, m = numbers[-2:] / jnp.stack([size[name] for name in names]), basis.unknowns
+
+    def newton(_: Any, state: State) -> State:
+        s = system(basis, on, state)
+        c = conditions(own, which, targets, on.unit, s.values, state.loads)
+        step = jnp.linalg.solve(bordered(s, c), jnp.concatenate([s.rest, c.miss]))
+        return State(state.u - step[:m], state.loads - step[m:])
+
     if anew:
-        w = jax.lax.fori_loop(
-            0, 8, lambda _, w: w - jnp.linalg.solve(*bordered(space, p, b, w, select, targets)[:2]), w
-        )
+        state = jax.lax.fori_loop(0, 8, newton, state)
     else:
-        w = settle(space, w, p, b, select, targets)
-    seen = observe(space, p, b, w)
+        state = settle((basis, own), state, p, b, jnp.asarray(which), targets)
+    seen = read(basis, on, state).numbers
     return jnp.stack([seen[name] for name in OBSERVED])
 
 
-exact_by = jax.jit(jax.jacfwd(results, argnums=3), static_argnums=(0, 1, 7))
+exact_by = jax.jit(jax.jacfwd(results, argnums=5), static_argnums=(0, 1, 2, 3))
 solved_at = jax.jit(
-    jax.vmap(results, in_axes=(None, None, None, 0, None, None, None, None)), static_argnums=(0, 1, 7)
+    jax.vmap(results, in_axes=(None, None, None, None, None, 0, None, None)), static_argnums=(0, 1, 2, 3)
 )  # fmt: skip
 
 
@@ -72,15 +86,15 @@ def agree(muscle: mk.Muscle, names: tuple[str, ...], state: Equilibrium, toleran
     held = Held.of(**{name: getattr(state, name) for name in names})
     leaves, tree = jax.tree.flatten(muscle)
     at, n = np.array([*leaves, *held.values]), len(leaves) + 2
-    known = state.problem.b, np.concatenate([state.u, state.loads[1:3]]), held.select()
-    exact = np.asarray(exact_by(state.problem.space, tree, at, np.ones(n), *known, False))
-    value = np.asarray(solved_at(state.problem.space, tree, at, np.ones((1, n)), *known, True))[0]
+    known, static = (state.problem.b, state.state), (state.problem.basis, tree, held.names)
+    exact = np.asarray(exact_by(*static, False, at, np.ones(n), *known))
+    value = np.asarray(solved_at(*static, True, at, np.ones((1, n)), *known))[0]
     size = np.abs(value)[:, None] + 1e-300
     steps = 2e-3 / np.maximum(
         1.0, np.max(np.abs(exact) / size, axis=0, where=np.abs(value)[:, None] > 1e-9, initial=1.0)
     )
     changed = 1.0 + np.einsum("o,kj->okj", OFFSETS, np.diag(steps))
-    near = np.asarray(solved_at(state.problem.space, tree, at, changed.reshape(-1, n), *known, True))
+    near = np.asarray(solved_at(*static, True, at, changed.reshape(-1, n), *known))
     near = np.einsum("o,okr->rk", WEIGHTS, near.reshape(len(OFFSETS), n, -1)) / steps
     error = np.abs(near - exact) / np.maximum(np.abs(exact), size)
     assert error.max() < tolerance, (error.max(), np.unravel_index(error.argmax(), error.shape))
@@ -141,11 +155,10 @@ def test_dimensions(muscle: mk.Muscle, test: mk.Isometric) -> None:
 def test_free_ends_of_thin_fibres_have_the_derivatives_of_the_cylinder() -> None:
     """The moment of the fibres bends a free end a little, less the thinner they are."""
     muscle, test = THIN.replace("ends", "free"), mk.Isometric(length="110 mm", pressure="1 bar")
-    law = law_of(muscle)
 
     def force(muscle: mk.Muscle, length: Any, pressure: Any) -> Any:
         p = parameters(muscle)
-        return cylinder_force(cylinder_angle(length, p), pressure, p, law)
+        return cylinder_force(cylinder_angle(length, p), pressure, p)
 
     slopes = jax.tree.leaves(jax.jit(jax.grad(force, argnums=(0, 1, 2)))(muscle, 0.110, 1e5))
     names = [*(name for name, _, _ in spec.numbers(muscle)), "test.length", "test.pressure"]
@@ -176,9 +189,9 @@ def test_peak_between_the_nodes() -> None:
     def hill(place: Any) -> Any:
         return peak(jnp.exp(-40.0 * (jnp.abs(x) - place) ** 2))
 
-    for place in (0.3, 0.501, 0.5 + 0.5 / 64):
-        value, slope = jax.value_and_grad(lambda at: (1.0 + at) * hill(at))(place)
-        assert float(value) == pytest.approx(1.0 + place, abs=2e-8)
+    for top in (0.3, 0.501, 0.5 + 0.5 / 64):
+        value, slope = jax.value_and_grad(lambda at: (1.0 + at) * hill(at))(top)
+        assert float(value) == pytest.approx(1.0 + top, abs=2e-8)
         assert float(slope) == pytest.approx(1.0, abs=1e-6)
     end = jax.value_and_grad(lambda a: peak(jnp.exp(a * jnp.abs(x))))(0.7)  # at the fitting
     np.testing.assert_allclose(np.array(end), np.exp(0.7), rtol=1e-12)

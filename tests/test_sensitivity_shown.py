@@ -10,6 +10,8 @@ from typer.testing import CliRunner
 import mckibben as mk
 from mckibben.app.cli import app
 
+pytestmark = pytest.mark.app
+
 PAPER, TEST = mk.presets.paper(), mk.Isometric(length="110 mm", pressure=[2e4, 1e5])
 
 

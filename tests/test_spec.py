@@ -11,10 +11,12 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from mckibben import presets, spec
-from mckibben.spec import Braid, Chamber, Fibre, Muscle, SpecError
+from mckibben import spec
+from mckibben.spec import Braid, Chamber, Fibre, Muscle, SpecError, presets
 from mckibben.spec.fields import spec_classes
 from mckibben.units import show
+
+pytestmark = pytest.mark.spec
 
 PROPERTY = settings(max_examples=50, deadline=None, derandomize=True, database=None)
 ROD = Fibre(B1=1e-6, B2=1e-6, B3=1e-6)
@@ -28,7 +30,7 @@ def braid(**changes):
 
 def test_layer_0_is_light():
     """Neither JAX nor pint is imported before it is needed."""
-    code = "import sys, mckibben.spec.text, mckibben.presets, mckibben.files.case\n"
+    code = "import sys, mckibben.spec.text, mckibben.spec.presets, mckibben.files.case\n"
     code += "print(sorted({'jax', 'pint', 'scipy', 'xarray', 'rapidfuzz'} & set(sys.modules)))"
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
     assert done.stdout.strip() == "[]"

@@ -3,10 +3,12 @@
 import pytest
 
 import mckibben as mk
-from mckibben.experiment import Bench
-from mckibben.solver.direct import find
-from mckibben.solver.equilibrium import Held
-from mckibben.stretched import stretched
+from mckibben.search.near_extension import stretched
+from mckibben.solver.bench import Bench
+from mckibben.solver.find import find
+from mckibben.solver.held import Held
+
+pytestmark = pytest.mark.solver
 
 REFERENCE = mk.presets.reference()
 BENCH = Bench.of(REFERENCE)

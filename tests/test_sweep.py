@@ -13,9 +13,11 @@ from hypothesis import strategies as st
 
 import mckibben as mk
 from mckibben.spec.vary import changed
-from mckibben.study import chunk
-from mckibben.study.designs import plan
-from mckibben.study.outcome import STATUSES
+from mckibben.sweeps import chunk
+from mckibben.sweeps.outcome import STATUSES
+from mckibben.sweeps.plan import plan
+
+pytestmark = pytest.mark.sweeps
 
 MUSCLE = mk.presets.paper()
 TEST = mk.Isometric(length="115 mm", pressure="0 to 1 bar", points=3)
@@ -100,7 +102,7 @@ def test_one_bad_design_spoils_no_other(monkeypatch: pytest.MonkeyPatch) -> None
         return single(muscle, test, **options)
 
     monkeypatch.setattr(chunk, "run", fragile)
-    monkeypatch.setattr(chunk, "solve_together", lambda asks, *_, **__: [None] * len(asks))
+    monkeypatch.setattr(chunk, "solve_together", lambda *_, **__: [])
     data = mk.sweep(MUSCLE, TEST, over, workers=0)
     assert status(data) == [*["complete", "incomplete"] * 2, *["wrong input"] * 2, *["failed"] * 2]
     reasons = data.reason.values.ravel().tolist()
@@ -212,7 +214,8 @@ def test_designs_are_the_grid_in_order_whatever_the_chunks(over: dict[str, list[
     wanted = plan(MUSCLE, BEYOND, over, chunk=size)
     combinations = list(itertools.product(*over.values()))
     assert len(wanted) == len(combinations)
-    in_chunks = [design for index in range(wanted.chunks) for design in wanted.piece(index).designs()]
+    pieces = [wanted.piece(index) for index in range(wanted.chunks)]
+    in_chunks = [piece.design(k) for piece in pieces for k in range(len(piece))]
     assert in_chunks == [wanted.design(k) for k in range(len(wanted))]
     for (muscle, test), values in zip(in_chunks, combinations, strict=True):
         one_by_one, length = MUSCLE, BEYOND.length

@@ -12,8 +12,10 @@ from typer.testing import CliRunner
 
 import mckibben as mk
 from mckibben.app.cli import app
-from mckibben.files import sweeps
-from mckibben.study import chunk
+from mckibben.sweeps import chunk
+from mckibben.sweeps import store as sweeps
+
+pytestmark = pytest.mark.sweeps
 
 MUSCLE = mk.presets.paper()
 TEST = mk.Isometric(length="115 mm", pressure="0 to 1 bar", points=3)
@@ -110,7 +112,7 @@ def test_half_written_and_failed_chunks_are_solved_again(whole: Path, tmp_path: 
 
 
 def test_interruption_keeps_what_is_finished(whole: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    store, together, left = tmp_path / "out.zarr", chunk.solve_together, [2]
+    store, together, left = tmp_path / "out.zarr", chunk.groups, [2]
 
     def interrupted(*args: object, **options: object) -> object:
         left[0] -= 1
@@ -119,7 +121,7 @@ def test_interruption_keeps_what_is_finished(whole: Path, tmp_path: Path, monkey
         return together(*args, **options)
 
     with monkeypatch.context() as patch:
-        patch.setattr(chunk, "solve_together", interrupted)
+        patch.setattr(chunk, "groups", interrupted)
         with pytest.raises(KeyboardInterrupt):
             again(store)
     assert sorted(file.name for file in (store / "status").glob("c.*")) == ["c.0"]
@@ -294,7 +296,7 @@ def test_wrong_sweep_files(tmp_path: Path, table: str, said: str) -> None:
 
 
 def test_unquoted_dots_are_understood(tmp_path: Path) -> None:
-    from mckibben.files.sweepfile import read_sweep
+    from mckibben.sweeps.sweepfile import read_sweep
 
     file = tmp_path / "sweep.toml"
     file.write_text(SWEEP + "[sweep.over]\nbraid.angle = [0.6]\nchamber.law.c1 = [1e4]\n", encoding="utf-8")

@@ -17,7 +17,9 @@ import xarray as xr
 from distributed import LocalCluster
 
 import mckibben as mk
-from mckibben.study.worker import THREADS
+from mckibben.sweeps.worker import THREADS
+
+pytestmark = pytest.mark.sweeps
 
 MUSCLE = mk.presets.paper()
 TEST = mk.Isometric(length="115 mm", pressure="0 to 1 bar", points=3)

@@ -12,6 +12,8 @@ from hypothesis import strategies as st
 from mckibben import units
 from mckibben.units import UnitError, from_si, show, split, to_si
 
+pytestmark = pytest.mark.spec
+
 PROPERTY = settings(max_examples=50, deadline=None, derandomize=True, database=None)
 SCALES = {
     "m": {"mm": "0.001", "cm": "0.01", "m": "1", "um": "0.000001"},

@@ -10,10 +10,14 @@ from matplotlib.collections import LineCollection, PolyCollection
 from matplotlib.figure import Figure
 
 import mckibben as mk
-from mckibben.app import reproduce as making
-from mckibben.result import Result
+from mckibben.paper import figures as paper
+from mckibben.paper import reproduce as making
+from mckibben.paper import sketches
+from mckibben.results.result import Result
 from mckibben.spec import SpecError
-from mckibben.view import curves, paper, shape3d, sketches, style
+from mckibben.view import curves, shape3d, style
+
+pytestmark = pytest.mark.view
 
 NOTE = "assumed: the paper does not print them"
 

@@ -4,7 +4,9 @@ import numpy as np
 import pytest
 from scipy.interpolate import CubicSpline
 
-from mckibben.work import hermite, slopes, work
+from mckibben.measure.work import hermite, slopes, work
+
+pytestmark = pytest.mark.measure
 
 
 @pytest.mark.parametrize("count", [2, 3, 4, 5, 40])

@@ -16,9 +16,9 @@ from random_muscles import done
 from sample import muscle_of
 from summary import missed
 
-from mckibben.experiment import Bench
-from mckibben.solver.direct import find
-from mckibben.solver.equilibrium import Held
+from mckibben.solver.bench import Bench
+from mckibben.solver.find import find
+from mckibben.solver.held import Held
 
 FILE = ROOT / "tests" / "data" / "random_targets.json"
 FINEST = 144

@@ -15,11 +15,11 @@ from judges import placement
 from random_muscles import done
 from sample import muscle_of
 
-from mckibben.experiment import Bench
-from mckibben.recover import recover
-from mckibben.solver.direct import find, refine
-from mckibben.solver.equilibrium import Equilibrium, Held
-from mckibben.survey import error_estimate
+from mckibben.measure.survey import errors, read_states
+from mckibben.solver.bench import Bench
+from mckibben.solver.equilibrium import Equilibrium
+from mckibben.solver.find import find, refine
+from mckibben.solver.held import Held
 
 ROWS = OUT / "error_estimate.json"
 SIZES, FINEST = (12, 24, 48, 96), 144
@@ -46,13 +46,14 @@ def measure(row: dict[str, Any]) -> list[dict[str, Any]]:
     natural = float(np.pi * bench.p.R0**2 * held.get("pressure")) + abs(finest.force)
     lines = []
     for size, state in zip(SIZES, states, strict=False):
-        seen = recover(state.problem, state.u[None], state.loads[None])
+        seen = read_states(state.problem, state.u[None], state.loads[None], False)[0]
         value, true = getattr(state, other), getattr(finest, other)
         lines.append({
             "id": case["id"], "size": size, "other": other, "converged": state.converged and finest.converged,
             "value": value, "true": true, "error": abs(value - true) / max(abs(true), 1e-300),
             "natural": abs(value - true) / (natural if other == "force" else abs(true)),
-            "estimate": float(error_estimate(seen)[0]), "variation": float(seen.conserved_variation[0]),
+            "estimate": float(errors(state.problem, state.u[None], state.loads[None])[0]),
+            "variation": float(seen.conserved_variation[0]),
             "tail": float(seen.coefficient_tail[0]), "finest_tail": finest.tail,
         })  # fmt: skip
     return lines

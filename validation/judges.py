@@ -5,13 +5,14 @@ from typing import Any
 import attrs
 import numpy as np
 
-from mckibben.branch import look
-from mckibben.experiment import Bench
-from mckibben.judge import ADMISSIBLE
-from mckibben.solver.direct import find, refine
-from mckibben.solver.equilibrium import Equilibrium, Held
-from mckibben.solver.path import settle, trace
-from mckibben.solver.placement import crowding
+from mckibben.discretise.placement import crowding
+from mckibben.measure.judge import ADMISSIBLE
+from mckibben.search.walk import look
+from mckibben.solver.bench import Bench
+from mckibben.solver.equilibrium import Equilibrium
+from mckibben.solver.find import equilibrium, find, refine
+from mckibben.solver.held import Held
+from mckibben.solver.path import trace
 from mckibben.solver.problem import Problem
 
 SIZE, FINE, STEPS, STARTS, RESOLVED = 48, 96, 24, 6, 1e-2
@@ -39,7 +40,7 @@ def placement(bench: Bench, held: Held) -> float:
     """Crowding of points for one state, from the cylinder formula."""
     force = held.get("force", np.nan)
     length = held.get("length", np.nan if np.isfinite(force) else float(bench.p.H0))
-    return crowding(bench.law, bench.p, np.array([length]), np.array([force]), np.array([held.get("pressure", 0.0)]))
+    return crowding(bench.p, np.array([length]), np.array([force]), np.array([held.get("pressure", 0.0)]))
 
 
 def along(problem: Problem, held: Held, H0: float, pressure_first: bool) -> Equilibrium | None:
@@ -66,11 +67,11 @@ def starts(problem: Problem, seed: int) -> list[Equilibrium]:
     """Random smooth shapes: the first modes with random amplitudes, slopes up to 0.2 .. 1.5 rad."""
     rng, found = np.random.default_rng(seed), []
     for _ in range(STARTS):
-        u = np.zeros(problem.space.basis.unknowns)
+        u = np.zeros(problem.basis.unknowns)
         modes = int(rng.integers(2, 13))
         u[:modes] = rng.normal(size=modes) / (1.0 + np.arange(modes))
-        u *= rng.uniform(0.2, 1.5) / np.abs(problem.slopes[0] @ u).max()
-        state = settle(problem, u, np.array([1.0, 0.0, 0.0, 0.0]), 0)
+        u *= rng.uniform(0.2, 1.5) / problem.moved(u)
+        state = equilibrium(problem, u, np.zeros(problem.loads))
         found.append(attrs.evolve(state, converged=True))
     return found
 

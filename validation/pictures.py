@@ -8,10 +8,10 @@ import jax.numpy as jnp
 import numpy as np
 from sample import muscle_of
 
-from mckibben.model.chamber import mooney_rivlin
 from mckibben.model.cylinder import cylinder_force, cylinder_length, end_layer
 from mckibben.model.kinematics import radius
 from mckibben.model.parameters import Parameters, parameters
+from mckibben.model.point import Point
 from mckibben.model.wrinkling import wrinkling
 from mckibben.view.style import BLUE, GREY, NOTE, ORANGE, PAGE, PURPLE, VERMILLION, new_figure, panel, tidy
 
@@ -27,12 +27,12 @@ LIMIT = 100.0
 def _cylinder(p: Parameters, length: Any, force: Any, pressure: Any) -> tuple[Any, Any, Any]:
     """Length of the cylinder with the target's length or force, H0 over its end layer, and its wrinkling index."""
     angles = jnp.linspace(jnp.deg2rad(3.0), jnp.deg2rad(88.0), 1001)
-    forces = jax.vmap(lambda theta: cylinder_force(theta, pressure, p, mooney_rivlin))(angles)
+    forces = jax.vmap(lambda theta: cylinder_force(theta, pressure, p))(angles)
     lengths = cylinder_length(angles, p)
     best = jnp.argmin(jnp.where(jnp.isnan(length), jnp.abs(forces - force), jnp.abs(lengths - length)))
     theta, h = angles[best], lengths[best]
-    layer = end_layer(theta, forces[best] + jnp.pi * radius(theta, p) ** 2 * pressure, p)
-    return h, p.H0 / layer, wrinkling(h, pressure, p, mooney_rivlin)[0]
+    layer = end_layer(theta, forces[best] + jnp.pi * radius(Point.cylinder(theta), p) ** 2 * pressure, p)
+    return h, p.H0 / layer, wrinkling(h, pressure, p)[0]
 
 
 def _place(row: dict[str, Any]) -> tuple[float, float, float]:

@@ -20,10 +20,10 @@ from judges import judge_target, placement, worth_of
 from sample import Case, draw, muscle_of
 
 import mckibben as mk
-from mckibben.experiment import Bench
-from mckibben.seek import UNSTABLE
-from mckibben.solver.direct import find
-from mckibben.solver.equilibrium import Held
+from mckibben.experiments.solve import UNSTABLE
+from mckibben.solver.bench import Bench
+from mckibben.solver.find import find
+from mckibben.solver.held import Held
 
 LINES, JUDGED = OUT / "random_muscles.jsonl", OUT / "random_muscles_judged.jsonl"
 AGAIN = (96, 256)

@@ -11,7 +11,6 @@ from typing import Any
 import numpy as np
 
 import mckibben as mk
-from mckibben.model.chamber import law_of
 from mckibben.model.cylinder import cylinder_angle, cylinder_force
 from mckibben.model.extension import full_extension
 from mckibben.model.parameters import parameters
@@ -38,9 +37,9 @@ def draw(k: int) -> Case:
     force = 0.0
     if kind == "isotonic":
         muscle = muscle_of(case)
-        p, law = parameters(muscle), law_of(muscle)
+        p = parameters(muscle)
         angle = cylinder_angle(_between(x, 0.8 * numbers["H0"], 0.95 * longest), p)
-        force = float(cylinder_force(angle, pressure, p, law))
+        force = float(cylinder_force(angle, pressure, p))
     return case | {"held": {"force": force, "pressure": pressure}}
 
 

@@ -10,20 +10,21 @@ _PUBLIC = {
         "Yeoh", "BlockedForce", "FreeContraction", "Isobaric", "Isometric", "Isotonic", "Protocol", "Step",
         "SpecError",
     ),
-    "mckibben.experiment": ("run", "MuscleWarning"),
-    "mckibben.seek": ("solve",),
-    "mckibben.reach": ("Limits", "least_pressure", "limits", "working_range"),
-    "mckibben.caution": ("cautions",),
-    "mckibben.study.sweep": ("sweep",),
-    "mckibben.study.trouble": ("SweepError",),
-    "mckibben.datasheet": ("force_map",),
-    "mckibben.differentiable": ("response",),
-    "mckibben.derivative": ("sensitivity",),
-    "mckibben.sensitivities": ("Sensitivity",),
+    "mckibben.experiments.run": ("run", "MuscleWarning"),
+    "mckibben.experiments.solve": ("solve",),
+    "mckibben.experiments.limits": ("Limits", "least_pressure", "limits", "working_range"),
+    "mckibben.measure.caution": ("cautions",),
+    "mckibben.sweeps.sweep": ("sweep",),
+    "mckibben.sweeps.trouble": ("SweepError",),
+    "mckibben.experiments.force_map": ("force_map",),
+    "mckibben.experiments.response": ("response",),
+    "mckibben.experiments.sensitivity": ("sensitivity",),
+    "mckibben.results.sensitivity": ("Sensitivity",),
     "mckibben.view.curves": ("plot",),
-    "mckibben.result": ("Result", "State"),
+    "mckibben.results.result": ("Result", "State"),
     "mckibben.files.case": ("read_case",),
-    "mckibben.files.store": ("load", "save"),
+    "mckibben.files.store": ("save",),
+    "mckibben.sweeps.load": ("load",),
 }  # fmt: skip
 _HOME = {name: module for module, names in _PUBLIC.items() for name in names}
 _MODULES = ("presets",)
@@ -33,11 +34,14 @@ __all__ = sorted([*_HOME, *_MODULES])
 
 def __getattr__(name: str) -> Any:
     if "jax" in sys.modules and name in __all__:  # whoever uses JAX may give it muscles, which must be pytrees by then
-        import_module("mckibben.model.pytrees")
+        import_module("mckibben.model.parameters")
     if name in _HOME:
         return getattr(import_module(_HOME[name]), name)
     if name in _MODULES:
-        return import_module(f"mckibben.{name}")
+        return import_module(f"mckibben.spec.{name}")
+    laws = import_module("mckibben.spec.laws")
+    if name in laws.__all__:  # a law that is new there needs no other list
+        return getattr(laws, name)
     raise AttributeError(f"module 'mckibben' has no attribute {name!r}")
 
 

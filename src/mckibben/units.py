@@ -1,4 +1,4 @@
-"""Text or pint quantity <-> SI float, and how numbers are shown. Nobody else knows units.
+"""Text or pint quantity <-> SI float, and how numbers are shown. All knowledge of units is here.
 
 Inside the package every number is SI (m, N, Pa, rad, m^3, N m^2). A bare number is taken as SI; text needs its
 unit ("12.5 mm"), except a plain zero. Units are looked up in one cached pint registry, imported on first use; the
@@ -22,7 +22,7 @@ Quantity: TypeAlias = Any
 """What a user may give as a number: an SI float, text with a unit, or a pint quantity."""
 
 Number: TypeAlias = Any
-"""An SI float, or the JAX tracer that stands for one while something is differentiated."""
+"""An SI float, or the JAX array or tracer that takes its place while JAX differentiates or compiles."""
 
 DISPLAY = {"m": "mm", "Pa": "bar", "rad": "deg", "m^3": "mL", "N m^2": "N mm^2", "J": "mJ"}
 """The unit each SI unit is shown in, where it is not itself."""
@@ -43,7 +43,7 @@ _UNIT = re.compile(rf"{_WORD}(?:(?: ?[*/] ?| ){_WORD})*")
 
 
 class UnitError(ValueError):
-    """A value that is no number of the wanted unit; the message says what is wrong and `advice` what to write."""
+    """A value cannot be read as a number in the wanted unit. The message says what is wrong, `advice` what to write."""
 
     def __init__(self, problem: str, advice: str = "") -> None:
         super().__init__(problem)
@@ -51,7 +51,7 @@ class UnitError(ValueError):
 
 
 def is_traced(value: object) -> bool:
-    """True for JAX arrays and tracers: they pass through untouched, being SI numbers already."""
+    """True for JAX arrays and tracers. They are SI numbers already, and are neither read nor checked."""
     return hasattr(value, "aval")
 
 
@@ -81,7 +81,7 @@ def _factor(unit: str, wanted: str) -> float:
 
 
 def _looked_up(clean: str, unit: str, wanted: str, example: str) -> float:
-    """The factor as pint knows it."""
+    """Factor from a unit to the SI unit `wanted`, looked up with pint."""
     if not _UNIT.fullmatch(clean):
         raise UnitError(f'has an unreadable unit "{_short(unit)}"', example)
     registry = _registry()

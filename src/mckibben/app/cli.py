@@ -1,4 +1,4 @@
-"""The command line: `mckibben`. Each command parses, calls the package and shows; heavy imports are inside commands."""
+"""The command line: `mckibben`. Commands parse, call the package and show; slow imports are inside them."""
 
 from __future__ import annotations
 
@@ -9,7 +9,11 @@ from typing import Annotated
 
 import typer
 
-from mckibben.app import commands_derive, commands_draw, commands_look, commands_run, commands_sweep
+from mckibben.app import draw as commands_draw
+from mckibben.app import look as commands_look
+from mckibben.app import run as commands_run
+from mckibben.app import sensitivity as commands_derive
+from mckibben.app import sweep as commands_sweep
 from mckibben.app.console import examples
 
 __all__ = ["app", "main"]
@@ -45,7 +49,7 @@ def _show_version(asked: bool) -> bool:
 
         typer.echo(f"mckibben {version('mckibben')}")
         raise typer.Exit
-    return asked  # what a callback gives back becomes the option's value
+    return asked  # typer takes what a callback returns as the option's value
 
 
 @app.callback()
@@ -59,11 +63,12 @@ def _root(
 
 def main() -> None:
     """The `mckibben` command."""
-    gc.set_threshold(100_000, 20, 20)  # what imports make stays: to look through it again and again takes a tenth more
+    # Collect garbage less often: most objects belong to modules and stay, and to look through them takes a tenth more.
+    gc.set_threshold(100_000, 20, 20)
     for stream in (sys.stdout, sys.stderr):
-        with suppress(AttributeError):  # a stream that someone replaced
-            stream.reconfigure(errors="replace")  # type: ignore[union-attr]  # rather signs as "?" than a failure
+        with suppress(AttributeError):  # a stream that was replaced, as in tests, may lack this method
+            stream.reconfigure(errors="replace")  # type: ignore[union-attr]  # a letter that the terminal lacks becomes "?"
     try:
         app()
     finally:
-        gc.freeze()  # nor does the end look through everything once more, which takes half a second
+        gc.freeze()  # leave out the collection at exit, which takes half a second

@@ -32,20 +32,28 @@ __all__ = [
     "table",
 ]
 
-COMPLETE, INPUT, INCOMPLETE, STOPPED, INTERRUPTED = 0, 2, 3, 4, 130
-"""Exit codes. 1 is left to what should not happen."""
+COMPLETE = 0
+"""Exit code: everything asked for was found."""
+INPUT = 2
+"""Exit code for wrong input, the same as for wrong options. 1 is what Python gives for an error in the program."""
+INCOMPLETE = 3
+"""Exit code: part of what was asked for has no admissible equilibrium or was not reached."""
+STOPPED = 4
+"""Exit code: something outside, such as a full disk, ended the work."""
+INTERRUPTED = 130
+"""Exit code after Ctrl-C, as shells have it: 128 plus the number of the signal."""
 
 P = ParamSpec("P")
 
 
 class Watch(Protocol):
-    """To be told (done, in all) and, where the work has several parts, which of them comes next."""
+    """A function that is called with (done, in all) and, where the work has several parts, the name of the next one."""
 
     def __call__(self, done: int, total: int, what: str = "", /) -> None: ...
 
 
 def examples(*lines: str) -> str:
-    """The end of a command's help: what users type, one example a line."""
+    """The end of a command's help: examples, one on each line."""
     return "\n\n".join(["[bold]Examples[/bold]", *(f"[cyan]{line}[/cyan]" for line in lines)])
 
 
@@ -66,17 +74,17 @@ def complain(message: str) -> None:
 
 
 def show_json(value: dict[str, Any]) -> None:
-    """One JSON object on stdout and nothing else. NaN and infinity must have become None."""
+    """Print one JSON object on stdout. It must hold None in place of NaN and infinity, which JSON does not know."""
     typer.echo(json.dumps(value, ensure_ascii=False, allow_nan=False))
 
 
 def command(function: Callable[P, int | None]) -> Callable[P, None]:
-    """The one place where errors become messages and exit codes, such as 2 for wrong input."""
+    """Decorator of every command: turns errors into one line on stderr and an exit code, such as 2 for wrong input."""
 
     @functools.wraps(function)
     def wrapped(*args: P.args, **kwargs: P.kwargs) -> None:
-        from mckibben.spec.errors import SpecError  # here, because `--help` needs none of it
-        from mckibben.study.trouble import SweepError
+        from mckibben.spec.errors import SpecError
+        from mckibben.sweeps.trouble import SweepError
 
         try:
             code = function(*args, **kwargs)
@@ -98,10 +106,10 @@ def command(function: Callable[P, int | None]) -> Callable[P, None]:
 
 @contextmanager
 def progress(what: str, hidden: bool = False, unit: str = "") -> Iterator[Watch]:
-    """A function to be told how far long work is; it draws a bar while stderr is a terminal.
+    """A function to call with (done, in all) during long work; it draws a bar if stderr is a terminal.
 
-    With `unit` ("designs") the bar shows how many are done in a second and the time left. What is done already when it
-    is told for the first time does not count for that.
+    With `unit` ("designs") the bar shows how many are done per second and the time left. What was done before the first
+    call, as when a sweep goes on, does not count for these.
     """
     console = _console(stderr=True)
     if hidden or not console.is_terminal:

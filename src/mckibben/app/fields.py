@@ -2,17 +2,15 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Iterable, Iterator
 from typing import Any
 
-from mckibben import presets
-from mckibben.spec import Muscle, Test, walk
+from mckibben.spec import Muscle, Test, presets, walk
+from mckibben.spec.change import CHANGED
 from mckibben.spec.declared import Declared
-from mckibben.spec.muscle import CHANGED
 from mckibben.units import show, to_si
 
-__all__ = ["beyond", "case_text", "derived", "muscle_rows", "numbered", "test_rows"]
+__all__ = ["case_text", "muscle_rows", "numbered", "test_rows"]
 
 ASSUMED = "ASSUMED"
 _HIDDEN = ("name", "assumed")
@@ -49,7 +47,7 @@ def _first(law: Any) -> str:
 
 
 def _origins(muscle: Muscle) -> dict[str, str]:
-    """Where values come from: the sources of the preset of that name where they agree with it, and what is assumed."""
+    """The source of each value that is the same as in the preset of this name, and of those that are assumed."""
     known: dict[str, str] = {}
     preset = (muscle.name or "").removesuffix(CHANGED)
     if preset in presets.names():
@@ -82,41 +80,6 @@ def _text(declared: Declared, value: Any) -> str:
     if declared.kind == "quantities":
         return ", ".join(declared.text(item) for item in value)
     return str(value)
-
-
-def derived(muscle: Muscle) -> Iterator[tuple[str, str, str]]:
-    """(quantity, value, meaning) of what follows from the fields without solving anything."""
-    from mckibben.model.extension import full_extension
-
-    braid, fibre = muscle.braid, muscle.braid.fibre
-    longest = full_extension(braid.radius, braid.length, braid.angle, str(muscle.ends))
-    yield (
-        "full extension",
-        show(longest, "m"),
-        "longest possible length: the fibres are straight, the force has no bound",
-    )
-    yield "fibre length", show(braid.length / math.sin(braid.angle), "m"), "from fitting to fitting, along one fibre"
-    for name, value in zip(("B1", "B2", "B3"), fibre.stiffnesses, strict=True):
-        way = {"B1": "bending in the tangent plane", "B2": "bending normal to the tube", "B3": "torsion"}[name]
-        yield f"fibre stiffness {name}", show(value, "N m^2"), way
-    if muscle.chamber is not None and hasattr(muscle.chamber.law, "shear_modulus"):
-        yield "shear modulus", show(muscle.chamber.law.shear_modulus, "kPa"), "of the chamber, at small strain"
-    if fibre.diameter is not None:
-        room = 2.0 * math.pi * braid.radius * math.sin(braid.angle) / (braid.fibres // 2)
-        said = f"between neighbouring fibres as made: {room / fibre.diameter:.3g} diameters; the braid jams at 1"
-        yield "jamming room", show(room, "m"), said
-
-
-def beyond(muscle: Muscle, test: Test | None) -> Iterator[str]:
-    """What of a test cannot be reached, as far as that can be told without solving."""
-    from mckibben.model.extension import full_extension
-
-    braid = muscle.braid
-    longest = full_extension(braid.radius, braid.length, braid.angle, str(muscle.ends))
-    for step in test.as_steps(muscle) if test is not None else ():
-        length = max((float(value) for value in step.length.waypoints), default=0.0) if step.length is not None else 0.0
-        if length >= longest:
-            yield f"note: the test asks for a length of {show(length, 'm')}; full extension is {show(longest, 'm')}"
 
 
 def case_text(name: str) -> str:

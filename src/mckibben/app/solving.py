@@ -1,13 +1,14 @@
-"""What surrounds long work: compiled functions kept, a progress bar, and warnings that the result carries anyway."""
+"""What every command that solves needs: compiled functions, a progress bar, and no warnings (the result has them)."""
 
 from __future__ import annotations
 
+import os
 import warnings
 from collections.abc import Iterator
 from contextlib import contextmanager
 
-from mckibben import cache
 from mckibben.app.console import Watch, progress
+from mckibben.compiled import folder
 
 __all__ = ["solving"]
 
@@ -15,10 +16,11 @@ __all__ = ["solving"]
 @contextmanager
 def solving(what: str, hidden: bool = False, unit: str = "") -> Iterator[Watch]:
     """Solve inside and tell the given function how far it is; nothing shows with `hidden`, or without a terminal."""
-    from mckibben.kernel import keeping
+    os.environ.setdefault("TF_CPP_MIN_LOG_LEVEL", "3")  # the compiler's own remarks; errors still raise
+    from mckibben.compiled.kernel import keeping
 
-    with progress(what, hidden, unit) as watch, cache.kept(), keeping(cache.kernels()):
-        from mckibben.experiment import MuscleWarning  # after the cache is set, before anything is compiled
+    with progress(what, hidden, unit) as watch, keeping(folder.ready()):
+        from mckibben.experiments.run import MuscleWarning
 
         warnings.simplefilter("ignore", MuscleWarning)
         yield watch

@@ -9,16 +9,19 @@ from typing import Any
 from mckibben.app.console import COMPLETE, INCOMPLETE, INTERRUPTED, say, table
 from mckibben.app.fields import muscle_rows
 from mckibben.files.table import rows
-from mckibben.result import Result
+from mckibben.results.result import Result
+from mckibben.results.variables import STEP
+from mckibben.results.verdict import Verdict
 from mckibben.units import from_si
-from mckibben.variables import STEP
-from mckibben.verdict import Verdict
 
 __all__ = ["as_json", "exit_code", "show"]
 
 COLUMNS = (("length", "mm"), ("contraction", "%"), ("force", "N"), ("pressure", "bar"), ("volume", "mL"))
+"""Columns of the table: variable and the unit it is shown in."""
 MOST_ROWS = 40
+"""Rows of the table; of more states the ones in the middle are left out."""
 GOOD = (Verdict.STABLE, Verdict.UNSTABLE)
+"""Verdicts of states that are equilibria and admissible."""
 
 
 def exit_code(result: Result) -> int:
@@ -29,7 +32,7 @@ def exit_code(result: Result) -> int:
 
 
 def show(result: Result, tolerance: float) -> None:
-    """The table of states, then what a user must know about them."""
+    """Print the table of states, then the notes on them."""
     states = list(rows(result))
     several = states[-1]["protocol_step"] > 0
     names = ["state", *(["step"] if several else []), *(f"{name}\n[{unit}]" for name, unit in COLUMNS), "verdict"]
@@ -58,7 +61,7 @@ def _numbers(row: dict[str, Any]) -> Iterator[str]:
             yield "-"
         else:
             shown = 100.0 * value if unit == "%" else from_si(value, unit)
-            yield f"{shown:.5g}" if abs(shown) > 1e-9 else "0"  # rounding errors of held numbers
+            yield f"{shown:.5g}" if abs(shown) > 1e-9 else "0"  # a force held at 0 N comes out as a rounding error
 
 
 def _notes(result: Result, states: list[dict[str, Any]], tolerance: float) -> Iterator[str]:
@@ -90,7 +93,7 @@ def _states(which: list[int]) -> str:
 
 
 def as_json(result: Result, file: str | None) -> dict[str, Any]:
-    """Everything per state in SI units, None where there is no number, and what it was computed for."""
+    """The whole result for JSON: every state in SI units, None for NaN, with the muscle, the test and the versions."""
     about = result.attributes
     return {
         "complete": exit_code(result) == COMPLETE,

@@ -8,25 +8,36 @@ from functools import lru_cache
 from typing import Any
 
 import attrs
+import jax.numpy as jnp
 import numpy as np
 from numpy.polynomial import legendre
-from numpy.typing import NDArray
 
-from ..lazy import jnp
-from ..model.parameters import Number, Parameters
-from .mesh import Form, Mesh
+from mckibben.compiled.arrays import Array
+from mckibben.discretise.fields import Floats, Form, Operators, Sampling, Variables
+from mckibben.model.angle import radians, tan
+from mckibben.model.parameters import Number, Parameters, functions
+from mckibben.model.point import Point
 
-Floats = NDArray[np.floating[Any]]
+__all__ = ["Spline"]
 
 
-def _state(theta: Number, y: Number, p: Parameters) -> tuple[Number, Number, Number]:
+def _point(x: Variables, p: Parameters) -> Point:
     """psi and kappa from y = (theta', theta''): Eq. (12) and its derivative; NaN at |psi| = 90 deg and beyond."""
-    slope = -p.R0 * jnp.tan(p.theta0)
-    sine = slope * y[0]
-    return theta, jnp.arcsin(sine), slope * y[1] / jnp.sqrt(1.0 - sine**2)
+    theta, rate, bend = x
+    slope = -p.R0 * tan(p.theta0)
+    sine = slope * rate
+    return Point(theta, jnp.arcsin(sine), slope * bend / jnp.sqrt(1.0 - sine**2))
 
 
-FORM = Form(state=_state, rate=lambda y, p: 0.0 * y[0])
+FORM = Form(
+    start=lambda p: radians(p.theta0),
+    rate=lambda y, p: 0.0 * y[0],
+    point=_point,
+    orders=(1, 2),
+    rated=(),
+    angles=(True, False, False),
+)
+"""y = (theta', theta''); theta itself is linear in the unknowns and nothing is integrated."""
 
 
 @attrs.frozen
@@ -38,12 +49,17 @@ class Spline:
 
     @property
     def form(self) -> Form:
-        """y = (theta', theta''); nothing is integrated."""
+        """What the local variables mean."""
         return FORM
 
     @property
+    def half(self) -> bool:
+        """Splines are over the full length."""
+        return False
+
+    @property
     def closes(self) -> bool:
-        """Both end angles are unknowns' business: no constraint is needed."""
+        """Equal end radii need no condition: the control points at both ends are held, or free."""
         return False
 
     @property
@@ -61,45 +77,74 @@ class Spline:
         """Free control points."""
         return self.size - 2 * self.held
 
+    def operators(self) -> Operators:
+        """Operators in x = v/H0."""
+        return _operators(self)
+
+    def sampling(self, count: int) -> Sampling:
+        """The splines at `count` uniform points."""
+        return _sampling(self, count)
+
+    def even(self) -> "Spline":
+        """Splines over the full length have antisymmetric disturbances among their own."""
+        return self
+
+    def inner_integral(self) -> Floats:
+        """Integral in x from 0 to each quadrature point, through a cubic spline."""
+        return _integral(self, _operators(self).x)
+
+    def uniform(self, count: int) -> Floats:
+        """`count` points uniform over the full length."""
+        return np.linspace(0.0, 1.0, count)
+
+    def coordinate(self, x: Any, p: Parameters, b: Number) -> Any:
+        """Material coordinate v [m] of x; b is not used: the paper's mesh is uniform."""
+        return x * p.H0
+
+    def jacobian(self, x: Any, p: Parameters, b: Number) -> Any:
+        """dv/dx [m] at x."""
+        return functions(x, p.H0).full(np.shape(x), 1.0) * p.H0
+
     def slope_factor(self, p: Parameters) -> Number:
         """Small changes of psi over those of the first field, theta' (Eq. 12)."""
-        return -p.R0 * jnp.tan(p.theta0)
+        return -p.R0 * tan(p.theta0)
 
-    def mesh(self, p: Parameters, b: Number) -> Mesh:
-        """Operators on a muscle; b is not used: the paper's mesh is uniform."""
-        x, w, basis = _operators(self)
-        angle, fields = jnp.asarray(basis[0]), jnp.stack([basis[1] / p.H0, basis[2] / p.H0**2], axis=1)
-        none = jnp.zeros((len(x), len(x)))
-        return Mesh(x * p.H0, w * p.H0, fields, angle, jnp.full(len(x), p.theta0), none)
+    def tail(self, u: Array) -> Any:
+        """Largest of the last two coefficients over the largest (..., m)."""
+        size = abs(u)
+        return size[..., -2:].max(-1) / functions(u).maximum(size.max(-1), 1e-12)
 
-    def nodes(self, p: Parameters, b: float, count: int | None = None) -> Floats:
-        """Material coordinates v [m] of `count` uniform output points, or of the mesh's points."""
-        x = _operators(self)[0] if count is None else np.linspace(0.0, 1.0, count)
-        return np.asarray(x * float(p.H0))
-
-    def profile(self, p: Parameters, b: float, u: Floats, count: int | None = None) -> tuple[Floats, Floats, Floats]:
-        """(theta, psi, kappa) of solutions u (steps, m) at the nodes or the mesh points: arrays (steps, points)."""
-        H0 = float(p.H0)
-        value, slope, bend = (u @ part.T for part in _basis(self, self.nodes(p, b, count) / H0))
-        rates = jnp.stack([jnp.asarray(slope) / H0, jnp.asarray(bend) / H0**2])
-        theta, psi, kappa = _state(jnp.asarray(float(p.theta0) + value), rates, p)
-        return np.asarray(theta), np.asarray(psi), np.asarray(kappa)
-
-    def integral(self, p: Parameters, b: float, values: Floats, count: int | None = None) -> Floats:
-        """Integral from v = 0 of fields given at the mesh's points (steps, points), through a cubic spline."""
-        from scipy.interpolate import CubicSpline  # here, because few need what takes half a second to import
-
-        antiderivative = CubicSpline(self.nodes(p, b), values, axis=1).antiderivative()
-        return np.asarray(antiderivative(self.nodes(p, b, count)) - antiderivative(0.0))
+    def embedded(self, other: Any, u: Floats) -> Floats:
+        """Unknowns of the same space; splines of other sizes are not nested."""
+        return np.asarray(u)
 
 
 @lru_cache(maxsize=8)
-def _operators(spline: Spline) -> tuple[Floats, Floats, Floats]:
-    """x in [0, 1], weights, and the free splines with first and second derivative (3, points, unknowns)."""
+def _operators(spline: Spline) -> Operators:
+    """x in [0, 1], weights, and the free splines with first and second derivative."""
     elements = spline.size - 3
     xi, w = legendre.leggauss(3)
     x = ((np.arange(elements)[:, None] + (xi + 1.0) / 2.0) / elements).ravel()
-    return x, np.tile(w / 2.0, elements) / elements, _basis(spline, x)
+    value, *rates = _basis(spline, x)
+    return Operators(x, np.tile(w / 2.0, elements) / elements, tuple(rates), value, np.zeros((len(x), len(x))))
+
+
+@lru_cache(maxsize=8)
+def _sampling(spline: Spline, count: int) -> Sampling:
+    """Output points."""
+    x = np.linspace(0.0, 1.0, count)
+    value, *rates = _basis(spline, x)
+    integral = _integral(spline, x)
+    return Sampling(x, tuple(rates), value, np.zeros_like(integral), integral)
+
+
+def _integral(spline: Spline, x: Floats) -> Floats:
+    """Matrix of the integrals from 0 to x of the cubic spline through values at the quadrature points."""
+    from scipy.interpolate import CubicSpline  # here, because few need what takes half a second to import
+
+    at = _operators(spline).x
+    antiderivative = CubicSpline(at, np.eye(len(at))).antiderivative()
+    return np.asarray(antiderivative(x) - antiderivative(0.0))
 
 
 def _basis(spline: Spline, x: Floats) -> Floats:

@@ -15,9 +15,26 @@ __all__ = ["read_case", "read_mapping"]
 
 
 def read_case(path: str | PathLike[str], overrides: Iterable[str] = (), *, test_required: bool = True) -> Case:
-    """The case in the file at `path`, with "dotted.name=value" overrides put in first.
+    """The muscle and the test in a case file (TOML).
 
-    Raises SpecError, in one line, for a file that cannot be read or is not TOML, and for whatever is wrong in it.
+    Args:
+        path: the file.
+        overrides: changes that are made before the case is read, each "dotted.name=value": "braid.angle=36 deg",
+            "test.points=41". Names are the muscle's unless they begin with "test.".
+        test_required: whether a file without a [test] table is an error.
+
+    Returns:
+        A Case with `muscle` and `test`; `test` is None if there is none. Numbers are in SI units.
+
+    Raises:
+        SpecError: for a file that cannot be read or is not TOML, and for whatever is wrong in it, in one line.
+
+    >>> from pathlib import Path
+    >>> text = '[muscle]\\npreset = "paper"\\n[test]\\nkind = "free-contraction"\\npressure = "0 to 1 bar"\\n'
+    >>> written = Path("case.toml").write_text(text)
+    >>> case = mk.read_case("case.toml", ["braid.angle=36 deg"])
+    >>> case.muscle.name, case.test.points
+    ('paper (changed)', 21)
     """
     mapping = read_mapping(path)
     if "sweep" in mapping:

@@ -1,6 +1,6 @@
 """Results as NetCDF-4 files, through h5netcdf. What is loaded equals what was saved, number by number.
 
-They are laid out as xarray would, and read by it. To write them takes no xarray, which would take as long as the test.
+The layout is that of xarray, which reads them. They are written without it, because importing it takes half a second.
 """
 
 from __future__ import annotations
@@ -15,12 +15,12 @@ import h5netcdf
 import h5py
 import numpy as np
 
-from mckibben.files import atomic
-from mckibben.result import Result
+from mckibben import disk
+from mckibben.results.result import Result
+from mckibben.results.variables import COORDINATES, FIELDS, VARIABLES, about_variable, dimensions
 from mckibben.spec import Muscle, Test
 from mckibben.spec.errors import SpecError
 from mckibben.spec.text import muscle_from_mapping, test_from_mapping
-from mckibben.variables import COORDINATES, FIELDS, VARIABLES, about_variable, dimensions
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -33,7 +33,7 @@ _BROKEN = (OSError, KeyError, ValueError, TypeError, RuntimeError, AttributeErro
 
 def save(result: Result, path: str | PathLike[str], force: bool = False) -> Path:
     """Write a result as a NetCDF-4 file; SpecError if the file exists (without `force`) or cannot be written."""
-    atomic.check_target(path, force)
+    disk.check_target(path, force)
     content = io.BytesIO()
     with h5netcdf.File(content, "w") as file:
         file.dimensions = {"step": len(result), "v": len(result.column("v"))}
@@ -41,11 +41,11 @@ def save(result: Result, path: str | PathLike[str], force: bool = False) -> Path
         for name in ("v", *VARIABLES):
             _put(file, name, result.column(name))
         file.attrs.update(result.attributes)
-    return atomic.write(path, content.getbuffer(), force)
+    return disk.write(path, content.getbuffer(), force)
 
 
 def _put(file: h5netcdf.File, name: str, array: np.ndarray) -> None:
-    """One variable; texts, and yes or no, in the ways that xarray has for them."""
+    """Write one variable; text and booleans are encoded as xarray does."""
     dims, about = dimensions(name), about_variable(name)
     if array.dtype.kind == "f":
         variable = file.create_variable(name, dims, array.dtype, array, fillvalue=np.nan)
@@ -93,7 +93,7 @@ def _opened(name: str, content: bytes) -> xr.Dataset:
 
 
 def _read_through(content: bytes) -> None:
-    """Touch everything in the file first: h5netcdf, unlike h5py, complains on stderr of what it cannot read."""
+    """Read the whole file with h5py first, which raises where it is damaged; h5netcdf would write to stderr instead."""
     with h5py.File(io.BytesIO(content), "r") as file:
         dict(file.attrs)
         for member in file.values():
@@ -126,6 +126,7 @@ def _checked(name: str, stored: xr.Dataset) -> xr.Dataset:
 
 
 _KINDS = {"verdict": "UOT", "reason": "UOT", "shape": "UOT", "converged": "b"}
+"""NumPy's letters of the kinds of data that a variable may have in a file: text in three forms, or booleans."""
 
 
 def _array(name: str, variable: xr.DataArray) -> np.ndarray:

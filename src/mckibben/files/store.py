@@ -6,15 +6,13 @@ from os import PathLike
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from mckibben.files import atomic
+from mckibben import disk
 from mckibben.spec.errors import SpecError
 
 if TYPE_CHECKING:
-    from xarray import Dataset
+    from mckibben.results.result import Result
 
-    from mckibben.result import Result
-
-__all__ = ["SUFFIXES", "check_output", "load", "load_result", "save", "suffix_of"]
+__all__ = ["SUFFIXES", "check_output", "load_result", "save", "suffix_of"]
 
 SUFFIXES = {".nc": "everything, to be loaded again (NetCDF-4)", ".csv": "the table of states"}
 
@@ -31,33 +29,34 @@ def suffix_of(path: str | PathLike[str], allowed: dict[str, str] = SUFFIXES) -> 
 def check_output(path: str | PathLike[str], force: bool = False) -> None:
     """SpecError if `save` to `path` would fail for its name, its folder or a file that is there already."""
     suffix_of(path)
-    atomic.check_target(path, force)
+    disk.check_target(path, force)
 
 
 def save(result: Result, path: str | PathLike[str], force: bool = False) -> Path:
     """Save a result: `.nc` keeps everything and can be loaded again, `.csv` is the table of states.
 
-    The file is written whole or not at all. SpecError if it exists (without `force`) or cannot be written.
+    Args:
+        result: what `run` gave, or the `result` of a `State`.
+        path: the file; its ending says the format. It is written whole or not at all.
+        force: replace a file that is there already.
+
+    Returns:
+        The path of the file.
+
+    Raises:
+        SpecError: for another ending, a file that exists (without `force`), or one that cannot be written.
+
+    >>> curve = mk.run(mk.presets.paper(), mk.Isometric(length="115 mm", pressure="0 to 1 bar", points=3))
+    >>> mk.save(curve, "curve.nc").name
+    'curve.nc'
     """
     if suffix_of(path) == ".nc":
-        from mckibben.files import netcdf  # here, because xarray takes a second to import
+        from mckibben.files import netcdf
 
         return netcdf.save(result, path, force)
     from mckibben.files import table
 
     return table.save_csv(result, path, force)
-
-
-def load(path: str | PathLike[str]) -> Result | Dataset:
-    """The result in an `.nc` file, equal to what was saved, or the sweep in a `.zarr` store, finished or not.
-
-    A sweep is an xarray Dataset that is read from the disk when used. SpecError for anything else.
-    """
-    if Path(path).suffix.lower() == ".zarr":
-        from mckibben.files import sweeps
-
-        return sweeps.load(path)
-    return load_result(path)
 
 
 def load_result(path: str | PathLike[str]) -> Result:

@@ -9,10 +9,10 @@ from os import PathLike
 from pathlib import Path
 from typing import Any
 
-from mckibben.files import atomic
-from mckibben.result import Result
-from mckibben.sensitivities import Sensitivity
-from mckibben.variables import STEP
+from mckibben import disk
+from mckibben.results.result import Result
+from mckibben.results.sensitivity import Sensitivity
+from mckibben.results.variables import STEP
 
 __all__ = ["rows", "save_csv", "save_sensitivity"]
 
@@ -26,11 +26,11 @@ def save_csv(result: Result, path: str | PathLike[str], force: bool = False) -> 
     writer.writerow(["state", *(_header(name) for name in STEP)])
     for state, row in enumerate(rows(result)):
         writer.writerow([state, *(_cell(row[name]) for name in STEP)])
-    return atomic.write(path, text.getvalue().encode("utf-8"), force)
+    return disk.write(path, text.getvalue().encode("utf-8"), force)
 
 
 def save_sensitivity(found: Sensitivity, path: str | PathLike[str], force: bool = False) -> Path:
-    """Write a sensitivity as a table: a row for each number; per result per cents and the derivative in SI units."""
+    """Write a sensitivity as a table: a row for each number, with per cents and SI derivative of each result."""
     data, text = found.data, io.StringIO(newline="")
     about = data.attrs
     lines = [about["title"], f"made by mckibben {about['mckibben_version']}", f"{found.verdict}: {found.reason}"]
@@ -48,11 +48,11 @@ def save_sensitivity(found: Sensitivity, path: str | PathLike[str], force: bool 
         known = [data[f"number{part}"].values[k].item() for part in ("", "_value", "_unit", "_assumed")]
         shares = [*data["relative"].values[k].tolist(), *data["absolute"].values[k].tolist()]
         writer.writerow([*map(_cell, known), *(_cell(None if share != share else share) for share in shares)])
-    return atomic.write(path, text.getvalue().encode("utf-8"), force)
+    return disk.write(path, text.getvalue().encode("utf-8"), force)
 
 
 def rows(result: Result) -> Iterator[dict[str, Any]]:
-    """The variables of each state as plain Python values in SI; None for a number that is not there."""
+    """The variables of each state as plain Python values in SI units, None for NaN."""
     columns = {name: result.column(name).tolist() for name in STEP}
     for state in range(len(result)):
         values = {name: column[state] for name, column in columns.items()}
@@ -67,7 +67,7 @@ def _header(name: str) -> str:
 def _cell(value: Any) -> str:
     if isinstance(value, bool):
         return "true" if value else "false"
-    return "" if value is None else str(value)  # the str of a float reads back exactly
+    return "" if value is None else str(value)  # str of a float has all its digits, so that it reads back equal
 
 
 def _comments(result: Result) -> Iterator[str]:

@@ -1,15 +1,17 @@
 """Sine and cosine of an angle, or of one whose sine and cosine are already known.
 
 Most of the time of a pointwise derivative goes into sines and cosines, and a compiler computes the same one many times
-over. Code that needs many derivatives at an angle passes it as a `Known` and pays for two.
+over. Code that needs many derivatives at an angle passes it as a `Known`, for which two are computed.
 """
 
 from collections.abc import Callable
 from functools import cache
 from typing import Any, NamedTuple
 
-from ..lazy import jax, jnp
-from .parameters import Number, functions
+import jax
+import jax.numpy as jnp
+
+from mckibben.model.parameters import Number, functions
 
 
 class Known(NamedTuple):
@@ -21,7 +23,7 @@ class Known(NamedTuple):
 
     @classmethod
     def of(cls, value: Number) -> "Known":
-        """Pay now."""
+        """The angle with its sine and cosine computed."""
         return cls(value, jnp.sin(value), jnp.cos(value))
 
 
@@ -55,3 +57,8 @@ def slope(function: Callable[[Any], Number], at: Any) -> Number:
     if not isinstance(at, Known):
         return jax.grad(function)(at)
     return jax.grad(lambda value: function(at._replace(value=value)))(at.value)
+
+
+def radians(angle: Any) -> Number:
+    """The angle [rad] itself."""
+    return angle.value if isinstance(angle, Known) else angle

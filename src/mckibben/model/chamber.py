@@ -1,68 +1,79 @@
-"""Hyperelastic laws of the incompressible chamber, one plain function each: energy density [Pa] from three stretches.
+"""Hyperelastic laws of the incompressible chamber: energy density [Pa] from three stretches, one plain function each.
 
-Each law may use that the product of the stretches is 1.
+A law is one value, the object of `spec.laws` with its constants, which rides inside the parameters. Each function may
+use that the product of the stretches is 1. To add a law, see docs/adding_a_law.md.
 """
 
-from .. import spec
-from ..lazy import jnp
-from .kinematics import stretches
-from .parameters import Law, Number, Parameters
+from collections.abc import Callable
+from typing import Any
+
+import jax
+import jax.numpy as jnp
+
+from mckibben.model.kinematics import stretches
+from mckibben.model.parameters import Number, Parameters
+from mckibben.model.point import Point
+from mckibben.spec.laws import CustomLaw, Gent, MooneyRivlin, NeoHookean, Ogden, Yeoh
+
+__all__ = ["LAWS", "chamber_density", "chamber_pull", "energy_density"]
 
 
-def mooney_rivlin(l1: Number, l2: Number, l3: Number, constants: tuple[Number, Number]) -> Number:
+def mooney_rivlin(l1: Number, l2: Number, l3: Number, law: MooneyRivlin) -> Number:
     """c1 (I1 - 3) + c2 (I2 - 3) (the paper's, Eq. 25); shear modulus 2 (c1 + c2)."""
-    c1, c2 = constants
-    return c1 * (l1**2 + l2**2 + l3**2 - 3.0) + c2 * (l1**-2 + l2**-2 + l3**-2 - 3.0)
+    return law.c1 * (l1**2 + l2**2 + l3**2 - 3.0) + law.c2 * (l1**-2 + l2**-2 + l3**-2 - 3.0)
 
 
-def neo_hookean(l1: Number, l2: Number, l3: Number, constants: tuple[Number]) -> Number:
+def neo_hookean(l1: Number, l2: Number, l3: Number, law: NeoHookean) -> Number:
     """c1 (I1 - 3); shear modulus 2 c1."""
-    return constants[0] * (l1**2 + l2**2 + l3**2 - 3.0)
+    return law.c1 * (l1**2 + l2**2 + l3**2 - 3.0)
 
 
-def yeoh(l1: Number, l2: Number, l3: Number, constants: tuple[Number, Number, Number]) -> Number:
+def yeoh(l1: Number, l2: Number, l3: Number, law: Yeoh) -> Number:
     """c1 (I1 - 3) + c2 (I1 - 3)^2 + c3 (I1 - 3)^3 (Yeoh 1993); shear modulus 2 c1."""
-    c1, c2, c3 = constants
     x = l1**2 + l2**2 + l3**2 - 3.0
-    return x * (c1 + x * (c2 + x * c3))
+    return x * (law.c1 + x * (law.c2 + x * law.c3))
 
 
-def ogden(l1: Number, l2: Number, l3: Number, constants: tuple[tuple[Number, ...], tuple[Number, ...]]) -> Number:
+def ogden(l1: Number, l2: Number, l3: Number, law: Ogden) -> Number:
     """Sum of mu_i/alpha_i (l1^alpha_i + l2^alpha_i + l3^alpha_i - 3) (Ogden 1972); shear modulus sum mu_i alpha_i/2."""
     total = 0.0 * l1
-    for mu, alpha in zip(*constants, strict=True):
+    for mu, alpha in zip(law.mu, law.alpha, strict=True):
         total = total + mu / alpha * (l1**alpha + l2**alpha + l3**alpha - 3.0)
     return total
 
 
-def gent(l1: Number, l2: Number, l3: Number, constants: tuple[Number, Number]) -> Number:
+def gent(l1: Number, l2: Number, l3: Number, law: Gent) -> Number:
     """-mu Jm/2 ln(1 - (I1 - 3)/Jm) (Gent 1996): the chains lock at I1 - 3 = Jm; NaN beyond."""
-    mu, Jm = constants
-    return -0.5 * mu * Jm * jnp.log1p(-(l1**2 + l2**2 + l3**2 - 3.0) / Jm)
+    return -0.5 * law.mu * law.Jm * jnp.log1p(-(l1**2 + l2**2 + l3**2 - 3.0) / law.Jm)
 
 
-LAWS: dict[type, Law] = {
-    spec.MooneyRivlin: mooney_rivlin,
-    spec.NeoHookean: neo_hookean,
-    spec.Yeoh: yeoh,
-    spec.Ogden: ogden,
-    spec.Gent: gent,
+def custom(l1: Number, l2: Number, l3: Number, law: CustomLaw) -> Number:
+    """The user's own function of the stretches and its named constants."""
+    return law.function(l1, l2, l3, dict(law.constants))
+
+
+LAWS: dict[type, Callable[[Number, Number, Number, Any], Number]] = {
+    MooneyRivlin: mooney_rivlin,
+    NeoHookean: neo_hookean,
+    Yeoh: yeoh,
+    Ogden: ogden,
+    Gent: gent,
+    CustomLaw: custom,
 }
+"""The energy of each kind of law."""
 
 
-def no_chamber(l1: Number, l2: Number, l3: Number, constants: tuple[()]) -> Number:
-    """The bare braid: no energy."""
-    return 0.0 * l1
+def energy_density(l1: Number, l2: Number, l3: Number, law: Any) -> Number:
+    """Energy per unit reference volume [Pa] at three principal stretches; zero for the bare braid, without a law."""
+    return 0.0 * l1 if law is None else LAWS[type(law)](l1, l2, l3, law)
 
 
-def law_of(muscle: "spec.Muscle") -> Law:
-    """The function of the muscle's chamber law (static: another function means another compilation)."""
-    if muscle.chamber is None:
-        return no_chamber
-    law = muscle.chamber.law
-    return law.function if isinstance(law, spec.CustomLaw) else LAWS[type(law)]
-
-
-def chamber_density(theta: Number, p: Parameters, law: Law) -> Number:
+def chamber_density(at: Point, p: Parameters) -> Number:
     """Energy of the chamber per unit v [J/m]: A0 psi(C) (Eq. 26)."""
-    return p.A0 * law(*stretches(theta, p), p.law)
+    return p.A0 * energy_density(*stretches(at, p), p.law)
+
+
+def chamber_pull(at: Point, p: Parameters) -> Number:
+    """Meridian force of the chamber [N]: A0 d(psi)/d(lambda2) at fixed hoop stretch."""
+    hoop, axial, _ = stretches(at, p)
+    return p.A0 * jax.grad(lambda a: energy_density(hoop, a, 1.0 / (hoop * a), p.law))(axial)

@@ -3,18 +3,23 @@
 It is the state of a long muscle away from its ends: psi = 0 and theta uniform (theory page, closed forms).
 """
 
-from ..lazy import jax, jnp
-from .energy import stored
-from .kinematics import radius
-from .parameters import Law, Number, Parameters
+import jax
+import jax.numpy as jnp
+
+from mckibben.model.energy import stored
+from mckibben.model.kinematics import radius
+from mckibben.model.parameters import Number, Parameters
+from mckibben.model.point import Point
+
+__all__ = ["cylinder_angle", "cylinder_force", "cylinder_length", "cylinder_volume", "end_layer"]
 
 
-def cylinder_force(theta: Number, pressure: Number, p: Parameters, law: Law) -> Number:
+def cylinder_force(theta: Number, pressure: Number, p: Parameters) -> Number:
     """Axial force [N], positive in tension, of a cylinder at braid angle theta [rad] and gauge pressure [Pa].
 
     F = [dw/dtheta - P d(pi r^2 s)/dtheta] / (ds/dtheta); with no stored energy this is Eq. (31).
     """
-    energy = jax.grad(lambda t: stored(t, 0.0 * t, 0.0 * t, p, law))(theta)
+    energy = jax.grad(lambda t: stored(Point.cylinder(t), p))(theta)
     volume = jax.grad(lambda t: cylinder_volume(t, p) / p.H0)(theta)
     return (energy - pressure * volume) * jnp.sin(p.theta0) / jnp.cos(theta)
 
@@ -31,7 +36,7 @@ def cylinder_angle(length: Number, p: Parameters) -> Number:
 
 def cylinder_volume(theta: Number, p: Parameters) -> Number:
     """Enclosed volume [m^3] of the cylinder; largest at the magic angle arctan(1/sqrt 2) (Fig. 1)."""
-    return jnp.pi * radius(theta, p) ** 2 * cylinder_length(theta, p)
+    return jnp.pi * radius(Point.cylinder(theta), p) ** 2 * cylinder_length(theta, p)
 
 
 def end_layer(theta: Number, tension: Number, p: Parameters) -> Number:

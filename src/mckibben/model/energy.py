@@ -2,36 +2,51 @@
 
     Pi = integral w dv - F (h - H0) - P (V - V0),   w = w_fibres + w_chamber
 
-Everything else (forces, tangents, stability, sensitivities) is derived from `quantities` by differentiation.
+Everything else (forces, tangents, stability, sensitivities) is derived from this by differentiation.
 """
 
-from ..lazy import Array, jax, jnp
-from .chamber import chamber_density
-from .fibres import fibre_densities
-from .kinematics import angle_rate, height_rate, volume_rate
-from .parameters import Law, Number, Parameters
+from typing import Any
+
+import jax
+import jax.numpy as jnp
+
+from mckibben.compiled.arrays import Array
+from mckibben.model.chamber import chamber_density
+from mckibben.model.fibres import fibre_densities
+from mckibben.model.kinematics import angle_rate, height_rate, volume_rate
+from mckibben.model.parameters import Number, Parameters
+from mckibben.model.point import Point
+
+__all__ = ["LOADS", "QUANTITIES", "lagrangian", "scales", "stored", "works"]
 
 QUANTITIES = ("energy", "length", "volume", "closure")
-"""What `quantities` integrates to: stored energy, length h, volume V, and theta(H0) - theta(0)."""
+"""What densities along the length integrate to: stored energy, length h, volume V, and theta(H0) - theta(0)."""
+
+LOADS = ("force", "pressure", "moment")
+"""What does work on the change of length, volume and closure: axial force F, gauge pressure P, closing moment M."""
 
 
-def stored(theta: Number, psi: Number, kappa: Number, p: Parameters, law: Law) -> Number:
-    """Stored energy per unit v [J/m]: fibres (Eq. 20) and chamber (Eq. 26)."""
-    return sum(fibre_densities(theta, psi, kappa, p)) + chamber_density(theta, p, law)
+def stored(at: Point, p: Parameters, memory: Any = None) -> Number:
+    """Stored energy per unit v [J/m]: fibres (Eq. 20) and chamber (Eq. 26).
+
+    `memory` is what a material point keeps of the state before; nothing here has one yet.
+    """
+    return sum(fibre_densities(at, p)) + chamber_density(at, p)
 
 
-def quantities(theta: Number, psi: Number, kappa: Number, p: Parameters, law: Law) -> Array:
-    """Densities per unit v of the four `QUANTITIES`."""
-    return jnp.stack([
-        stored(theta, psi, kappa, p, law),
-        height_rate(theta, psi, p),
-        volume_rate(theta, psi, p),
-        angle_rate(psi, p),
-    ])  # fmt: skip
+def works(at: Point, p: Parameters) -> tuple[Number, Number, Number]:
+    """Densities per unit v of length, volume and closure, on whose change the `LOADS` do work."""
+    return height_rate(at, p), volume_rate(at, p), angle_rate(at, p)
 
 
-def scales(p: Parameters, law: Law) -> Array:
+def lagrangian(at: Point, p: Parameters, F: Number, P: Number, M: Number = 0.0, memory: Any = None) -> Number:
+    """L = w - F z' - P pi r^2 z' - M theta' [J/m]: what a state makes stationary."""
+    height, volume, closure = works(at, p)
+    return stored(at, p, memory) - F * height - P * volume - M * closure
+
+
+def scales(p: Parameters) -> Array:
     """Units that make the quantities of order one: a characteristic energy [J], H0 [m], V0 [m^3] and 1 rad."""
-    modulus = jax.grad(jax.grad(lambda t: chamber_density(p.theta0 + t, p, law)))(0.0)
+    modulus = jax.grad(jax.grad(lambda t: chamber_density(Point.cylinder(p.theta0 + t), p)))(0.0)
     energy = p.H0 * (p.N * (p.B1 + p.B2 + p.B3) / p.R0**2 + jnp.abs(modulus))
     return jax.lax.stop_gradient(jnp.stack([energy, p.H0, jnp.pi * p.R0**2 * p.H0, jnp.ones_like(p.H0)]))

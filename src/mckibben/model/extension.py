@@ -3,9 +3,9 @@
 import math
 from collections.abc import Callable
 
-from .. import spec
-from ..units import Number
-from .elliptic import elliprd, elliprf
+from mckibben import spec
+from mckibben.model.elliptic import elliprd, elliprf
+from mckibben.units import Number
 
 LONG = 25.0
 """From this T on, the long muscle's limit is exact: what it leaves out is of order T exp(-2 T)."""

@@ -3,18 +3,20 @@
 Numbers are leaves of JAX pytrees (they can be traced, differentiated and batched), choices are static.
 """
 
-from collections.abc import Callable
-from importlib import import_module
 from typing import Any, NamedTuple
 
-import attrs
+import jax
+import jax.numpy as jnp
 import numpy as np
 
-from .. import spec
-from ..lazy import jnp, set_up
-from ..units import is_traced
+from mckibben.model import pytrees
+from mckibben.spec.muscle import Muscle
+from mckibben.units import is_traced
 
-set_up(lambda: import_module("mckibben.model.pytrees"))  # spec objects become pytrees with the first use of JAX
+jax.config.update("jax_enable_x64", True)  # before anything is computed: every module of mechanics imports this one
+pytrees.register()
+
+__all__ = ["Number", "Parameters", "functions", "numbers", "parameters", "static_braid"]
 
 Number = Any
 """A float, a NumPy or JAX scalar, or a tracer."""
@@ -23,10 +25,6 @@ Number = Any
 def functions(*values: Number) -> Any:
     """NumPy for plain numbers and arrays, where nothing is to be compiled; `jax.numpy` where JAX is in a value."""
     return jnp if any(is_traced(value) for value in values) else np
-
-
-Law = Callable[[Number, Number, Number, Any], Number]
-"""Hyperelastic law: energy density [Pa] from the three principal stretches and the law's constants."""
 
 
 class Parameters(NamedTuple):
@@ -41,21 +39,20 @@ class Parameters(NamedTuple):
     B3: Number  #: torsional stiffness [N m^2]
     helical: Number  #: 1 if the initial helix is stress-free, 0 if the straight fibre is
     A0: Number  #: area of the chamber's wall in the initial cross-section [m^2] (Eq. 26)
-    law: Any  #: constants of the chamber's law, as the law's function takes them
+    law: Any  #: law of the chamber: its kind is static, its constants are leaves; None for the bare braid
 
 
-def parameters(muscle: "spec.Muscle") -> Parameters:
+def parameters(muscle: Muscle) -> Parameters:
     """Numbers of a muscle; differentiable with respect to every number of its specification."""
-    *given, law = numbers(muscle)
-    arrays = {name: _array(x) for name, x in law.items()} if isinstance(law, dict) else tuple(map(_array, law))
-    return Parameters._make([*map(_array, given), arrays])
+    made: Parameters = jax.tree.map(_array, numbers(muscle))
+    return made
 
 
 def _array(value: Number) -> Number:
     return functions(value).asarray(value, float)
 
 
-def numbers(muscle: "spec.Muscle") -> Parameters:
+def numbers(muscle: Muscle) -> Parameters:
     """Numbers of a muscle as they are in its specification, floats or traced."""
     braid, fibre, chamber = muscle.braid, muscle.braid.fibre, muscle.chamber
     B1, B2, B3 = fibre.stiffnesses
@@ -64,15 +61,8 @@ def numbers(muscle: "spec.Muscle") -> Parameters:
         braid.radius, braid.length, braid.angle, braid.fibres, B1, B2, B3,
         1.0 if fibre.natural == "helical" else 0.0,
         np.pi * thickness * (thickness + 2.0 * braid.radius),
-        () if chamber is None else constants(chamber.law),
+        None if chamber is None else chamber.law,
     )  # fmt: skip
-
-
-def constants(law: Any) -> Any:
-    """Constants of a law as a pytree: a dict for a user's law, else the declared numbers in order."""
-    if isinstance(law, spec.CustomLaw):
-        return dict(law.constants)
-    return tuple(getattr(law, field.name) for field in attrs.fields(type(law)))
 
 
 def static_braid(p: Parameters) -> Number:

@@ -6,13 +6,14 @@ puts its own placeholders where numbers belong.
 """
 
 from collections.abc import Callable
+from functools import cache
 from typing import Any
 
 import attrs
 import jax
 
-from .. import spec
-from ..spec.laws import Constants
+from mckibben import spec
+from mckibben.spec.laws import Constants
 
 CHILDREN = ("quantity", "count", "quantities", "part", "path", "held", "steps", "constants")
 """Kinds of declared fields that hold numbers, directly or further down."""
@@ -90,7 +91,10 @@ def _register_constants() -> None:
     _add(Constants, keyed, lambda names, leaves: Constants(dict(zip(names, leaves, strict=True))), flat)
 
 
-for _cls in spec.spec_classes():
-    _register(_cls)
-_register_path()
-_register_constants()
+@cache
+def register() -> None:
+    """Make every spec class a pytree; once, before JAX is given any of their objects."""
+    for cls in spec.spec_classes():
+        _register(cls)
+    _register_path()
+    _register_constants()

@@ -4,8 +4,9 @@ They are one formula in three sets of variables: all equal `cylinder_force` with
 F > 0: the muscle pulls its ends together. Arguments broadcast.
 """
 
-from ..lazy import jnp
-from .parameters import Number, Parameters
+import jax.numpy as jnp
+
+from mckibben.model.parameters import Number, Parameters
 
 
 def virtual_work_force(theta: Number, pressure: Number, p: Parameters) -> Number:

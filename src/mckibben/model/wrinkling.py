@@ -1,15 +1,18 @@
 """Whether a uniform cylinder under load is expected to wrinkle before it reaches a target (theory page, stability)."""
 
-from ..kernel import kernel
-from ..lazy import Array, jax, jnp
-from .cylinder import cylinder_angle, cylinder_force
-from .energy import stored
-from .kinematics import height_rate, volume_rate
-from .parameters import Law, Number, Parameters, static_braid
+import jax
+import jax.numpy as jnp
+
+from mckibben.compiled.arrays import Array
+from mckibben.model.cylinder import cylinder_angle, cylinder_force
+from mckibben.model.energy import lagrangian
+from mckibben.model.parameters import Number, Parameters, static_braid
+from mckibben.model.point import Point
+
+__all__ = ["wrinkling"]
 
 
-@kernel
-def wrinkling(law: Law, length: Number, pressure: Number, p: Parameters) -> tuple[Number, Number]:
+def wrinkling(length: Number, pressure: Number, p: Parameters) -> tuple[Number, Number]:
     """Wrinkling index and wavelength [m, along v] of the cylinder of a given length [m] at a gauge pressure [Pa].
 
     index = (L_psipsi + 2 a L_thetakappa) / (2 a sqrt(L_kappakappa L_thetatheta)) with a = 1/(R0 tan theta0) and L the
@@ -17,14 +20,12 @@ def wrinkling(law: Law, length: Number, pressure: Number, p: Parameters) -> tupl
     without bound on an endless tube; clamped ends delay it. NaN where L_thetatheta is not positive.
     """
     theta = cylinder_angle(length, p)
-    force = cylinder_force(theta, pressure, p, law)
+    force = cylinder_force(theta, pressure, p)
 
-    def lagrangian(x: Array) -> Number:
-        t, psi, kappa = x
-        loads = force * height_rate(t, psi, p) + pressure * volume_rate(t, psi, p)
-        return stored(t, psi, kappa, p, law) - loads
+    def density(x: Array) -> Number:
+        return lagrangian(Point(*x), p, force, pressure)
 
-    H = jax.hessian(lagrangian)(jnp.stack([theta, jnp.zeros_like(theta), jnp.zeros_like(theta)]))
+    H = jax.hessian(density)(jnp.stack([theta, jnp.zeros_like(theta), jnp.zeros_like(theta)]))
     a = static_braid(p)
     index = (H[1, 1] + 2.0 * a * H[0, 2]) / (2.0 * a * jnp.sqrt(H[2, 2] * H[0, 0]))
     return index, 2.0 * jnp.pi * (H[2, 2] / (a**2 * H[0, 0])) ** 0.25

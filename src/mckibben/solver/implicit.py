@@ -1,6 +1,6 @@
 """Derivatives of a state that is known, by the implicit function theorem.
 
-The unknowns w = (u, force, pressure) satisfy R(w; p, targets) = 0: equilibrium and the two quantities that are held. So
+The state w satisfies R(w; p, targets) = 0: equilibrium and the rows that hold. So
 
     dw = -(dR/dw)^-1 (dR/dp dp + dR/dtargets dtargets)
 
@@ -11,53 +11,53 @@ only by its discretisation error.
 from functools import partial
 from typing import Any
 
+import jax
+import jax.numpy as jnp
 from jaxtyping import Float
 
-from ..discretise.assemble import totals
-from ..lazy import Array, jax, jnp
-from ..model.parameters import Number, Parameters
-from .problem import LENGTH, VOLUME, Space, bordered
+from mckibben.compiled.arrays import Array
+from mckibben.discretise.fields import place
+from mckibben.model.parameters import Number, Parameters
+from mckibben.solver.held import conditions
+from mckibben.solver.newton import bordered
+from mckibben.solver.problem import Basis
+from mckibben.solver.system import State, system
 
-
-def potential(
-    space: Space, p: Parameters, b: Number, w: Float[Array, " w"]
-) -> tuple[Float[Array, " u"], Float[Array, "4"]]:
-    """Gradient of the potential energy by u, and the values of `NAMES` (length, volume, force, pressure)."""
-    signs = jnp.stack([jnp.ones_like(w[-2]), -w[-2], -w[-1], jnp.zeros_like(w[-1])])
-    mesh, form, density = space.mesh(p, b), space.basis.form, space.density(p)
-
-    def energy(u: Array) -> tuple[Array, Array]:
-        found = totals(mesh, form, density, u, p)
-        return signs @ found, found
-
-    rest, found = jax.grad(energy, has_aux=True)(w[:-2])
-    return rest, jnp.concatenate([found[LENGTH : VOLUME + 1], w[-2:]])
+__all__ = ["imbalance", "settle"]
 
 
 def imbalance(
-    space: Space, p: Parameters, b: Number, w: Float[Array, " w"], select: Any, targets: Float[Array, "2"]
+    static: tuple[Basis, Any], p: Parameters, b: Number, state: State, which: Any, targets: Array
 ) -> Float[Array, " w"]:
-    """R: the gradient of the potential energy by u, and what is held minus its targets; dimensionless."""
-    rest, have = potential(space, p, b, w)
-    return jnp.concatenate([rest, select @ have - targets])
+    """R: the gradient of the Lagrangian by the shape, and the misses of the rows; dimensionless."""
+    basis, own = static
+    on = place(basis, p, b)
+    s = system(basis, on, state)
+    return jnp.concatenate([s.rest, conditions(own, which, targets, on.unit, s.values, state.loads).miss])
 
 
 @partial(jax.custom_jvp, nondiff_argnums=(0,))
 def settle(
-    space: Space, w: Float[Array, " w"], p: Parameters, b: Number, select: Any, targets: Float[Array, "2"]
-) -> Float[Array, " w"]:
-    """w, which must be a state, as a function of p and targets, differentiable to any order; NaN stays NaN."""
-    return w
+    static: tuple[Basis, Any], state: State, p: Parameters, b: Number, which: Any, targets: Float[Array, " l"]
+) -> State:
+    """A state, which must be one, as a function of p and targets, differentiable to any order; NaN stays NaN."""
+    return state
 
 
 @settle.defjvp
-def _settle_jvp(space: Space, primals: Any, tangents: Any) -> tuple[Any, Any]:
-    w, p, b, select, targets = primals
+def _settle_jvp(static: tuple[Basis, Any], primals: Any, tangents: Any) -> tuple[Any, Any]:
+    given, p, b, which, targets = primals
     _, dp, _, _, dtargets = tangents
-    # Not w, which is constant, but the state, which depends on p in turn: that gives the higher derivatives.
-    state = settle(space, w, p, b, select, targets)
-    good = jnp.isfinite(state).all()
-    safe = jnp.where(good, state, 0.0)
-    system = jnp.where(good, bordered(space, p, b, safe, select, targets)[0], jnp.eye(len(w)))
-    _, change = jax.jvp(lambda p, targets: imbalance(space, p, b, safe, select, targets), (p, targets), (dp, dtargets))
-    return state, -jnp.linalg.solve(system, change)
+    # Not the given state, which is constant, but the one that depends on p in turn: that gives the higher derivatives.
+    state = settle(static, given, p, b, which, targets)
+    good = jnp.isfinite(state.u).all() & jnp.isfinite(state.loads).all()
+    safe = jax.tree.map(lambda part: jnp.where(good, part, 0.0), state)
+    basis, own = static
+    on = place(basis, p, b)
+    s = system(basis, on, safe)
+    matrix = bordered(s, conditions(own, which, targets, on.unit, s.values, safe.loads))
+    matrix = jnp.where(good, matrix, jnp.eye(len(matrix)))
+    change = jax.jvp(lambda p, targets: imbalance(static, p, b, safe, which, targets), (p, targets), (dp, dtargets))[1]
+    step = -jnp.linalg.solve(matrix, change)
+    m = len(state.u)
+    return state, State(step[:m], step[m:])

@@ -1,123 +1,121 @@
-"""One muscle on one discretisation: the functions a solver calls, compiled once per kind of muscle and size."""
+"""One muscle on one discretisation, and what the robust search asks of it."""
 
-from typing import Any
+from typing import Any, NamedTuple
 
 import attrs
+import jax
+import jax.numpy as jnp
 import numpy as np
 from jaxtyping import Float
 
-from ..discretise.assemble import Assembly, assemble
-from ..discretise.bspline import Spline
-from ..discretise.line import Line
-from ..discretise.mesh import Mesh
-from ..kernel import kernel
-from ..lazy import Array, jnp
-from ..model.energy import quantities, scales
-from ..model.parameters import Law, Number, Parameters
+from mckibben.compiled.arrays import Array
+from mckibben.compiled.kernel import kernel
+from mckibben.discretise.bspline import Spline
+from mckibben.discretise.fields import Placed, place, variables
+from mckibben.discretise.spectral import Line
+from mckibben.model.angle import radians
+from mckibben.model.energy import QUANTITIES
+from mckibben.model.parameters import Number, Parameters
+from mckibben.solver.system import State, assemble, localise
 
-LENGTH, VOLUME, CLOSURE = 1, 2, 3
-"""Positions in `model.energy.QUANTITIES`, and of their multipliers force, pressure and closing moment in `loads`."""
+__all__ = ["CLOSURE", "LENGTH", "VOLUME", "Assembly", "Basis", "Problem", "evaluate", "setting", "slopes"]
+
+Basis = Line | Spline
+
+LENGTH, VOLUME, CLOSURE = (QUANTITIES.index(name) for name in ("length", "volume", "closure"))
 
 
-@attrs.frozen
-class Space:
-    """The static part of a problem: a discretisation and a chamber law. Hashable; compiled code hangs on it."""
+class Assembly(NamedTuple):
+    """The four quantities at unknowns u, dimensionless, with their derivatives by the unknowns."""
 
-    basis: Line | Spline
-    law: Law
-
-    def mesh(self, p: Parameters, b: Number) -> Mesh:
-        """Operators on a muscle."""
-        return self.basis.mesh(p, b)
-
-    @property
-    def half(self) -> bool:
-        """Whether it is a half line, for which there are quicker equations (`lockstep`)."""
-        return isinstance(self.basis, Line) and self.basis.half
-
-    @property
-    def line(self) -> Line:
-        """The basis, which must be a line."""
-        assert isinstance(self.basis, Line)
-        return self.basis
-
-    def density(self, p: Parameters) -> Any:
-        """Pointwise quantities of the local fields x = (theta, y), in units of `scales`."""
-        unit = scales(p, self.law)
-        return lambda x: quantities(*self.basis.form.state(x[0], x[1:], p), p, self.law) / unit
-
-    def assemble(self, p: Parameters, b: Number, u: Any, coefficients: Any) -> Assembly:
-        """Totals, gradients and combined tangents at u."""
-        return assemble(self.mesh(p, b), self.basis.form, self.density(p), u, p, coefficients)
+    theta: Float[Array, " q"]  #: braid angle at the points [rad]
+    totals: Float[Array, "4"]
+    gradients: Float[Array, "4 m"]
+    tangents: Float[Array, "4 m m"]
 
 
 @kernel
-def setting(space: Space, p: Parameters, b: Number) -> tuple[Float[Array, " 4"], Mesh]:
-    """Units of the four quantities, and the operators."""
-    return scales(p, space.law), space.mesh(p, b)
+def evaluate(basis: Basis, p: Parameters, b: Number, u: Float[Array, " m"]) -> Assembly:
+    """Each quantity as a Lagrangian of its own: the energy alone, then with one load of -1 each and no energy."""
+    on = place(basis, p, b)
+
+    def one(share: Array, loads: Array) -> tuple[Array, Array, Array]:
+        local = localise(basis, on, State(u, loads), share)
+        s = assemble(basis, on, local, 3)
+        return local.value.sum(), s.rest, s.stiffness
+
+    shares, loads = jnp.array([1.0, 0.0, 0.0, 0.0]), jnp.concatenate([jnp.zeros((1, 3)), -jnp.eye(3)])
+    return Assembly(braid_angle(basis, on, u), *jax.vmap(one)(shares, loads))
+
+
+def braid_angle(basis: Basis, on: Placed, u: Array) -> Float[Array, " q"]:
+    """theta at the points."""
+    return radians(basis.form.point(variables(basis, on, u), on.p).theta)
+
+
+class Setting(NamedTuple):
+    """What does not change while a muscle is on a discretisation."""
+
+    unit: Float[Array, "4"]  #: of energy [J], length [m], volume [m^3], closure [rad]
+    v: Float[Array, " q"]  #: material coordinate of the points [m]
+    metric: Float[Array, "m m"]  #: norm of a step
+    slopes: Float[Array, "q m"]  #: change of psi at the points by each unknown, about the cylinder
 
 
 @kernel
-def evaluate(space: Space, p: Parameters, b: Number, u: Float[Array, " m"]) -> Assembly:
-    """The four quantities with gradients and one tangent each."""
-    return space.assemble(p, b, u, jnp.eye(4))
+def setting(basis: Basis, p: Parameters, b: Number) -> Setting:
+    """Units, points and norms.
 
-
-def bordered(
-    space: Space, p: Parameters, b: Number, w: Float[Array, " w"], select: Any, targets: Float[Array, "2"]
-) -> tuple[Float[Array, "w w"], Float[Array, " w"], Float[Array, "2"]]:
-    """Equilibrium R(w) = 0 on any space: dR/dw, R, and length and volume, all dimensionless.
-
-    w = (u, force, pressure); R is the gradient of the potential energy by u, and what `select` holds minus `targets`.
+    The norm of a step is mean(dpsi^2) + (0.05 H0)^2 mean(dkappa^2), so that short waves count. The part of theta that
+    is itself unknown (free ends, splines) counts by its mean square.
     """
-    row = jnp.stack([jnp.ones_like(w[-2]), -w[-2], -w[-1], jnp.zeros_like(w[-1])])
-    a = space.assemble(p, b, w[:-2], row[None])
-    G = a.gradients[LENGTH : VOLUME + 1]
-    matrix = jnp.block([[a.tangents[0], -G.T], [select[:, :2] @ G, select[:, 2:]]])
-    values = a.totals[LENGTH : VOLUME + 1]
-    miss = select @ jnp.concatenate([values, w[-2:]]) - targets
-    return matrix, jnp.concatenate([row @ a.gradients, miss]), values
+    on, operators = place(basis, p, b), basis.operators()
+    weight = operators.weights * on.jacobian / (operators.weights @ on.jacobian)
+    slope, bend = slopes(basis, on), slopes(basis, on, 1)
+    lift = jnp.asarray(operators.lift)
+    norm = (slope.T * weight) @ slope + (0.05 * p.H0) ** 2 * ((bend.T * weight) @ bend) + (lift.T * weight) @ lift
+    return Setting(on.unit, jnp.asarray(basis.coordinate(operators.x, p, b)), norm, slope)
+
+
+def slopes(basis: Basis, on: Placed, field: int = 0) -> Float[Array, "q m"]:
+    """Change of psi (or of its derivative, `field` 1) at the points by each unknown, about the cylinder."""
+    scale = on.jacobian[:, None] ** basis.form.orders[field]
+    return basis.slope_factor(on.p) * (jnp.asarray(basis.operators().fields[field]) / scale)
 
 
 @attrs.frozen
 class Problem:
-    """A space on one muscle: numbers, point placement, units and operators."""
+    """A discretisation on one muscle: its numbers, the placement of points, units and norms."""
 
-    space: Space
+    basis: Basis
     p: Parameters
     b: float  #: how strongly points are crowded into the end layers
-    unit: np.ndarray  #: of energy, length, volume, closure
-    mesh: Any  #: `Mesh` of NumPy arrays
+    setting: Any  #: `Setting` of NumPy arrays
 
     @classmethod
-    def of(cls, space: Space, p: Parameters, b: float) -> "Problem":
-        """Set up operators and units."""
-        unit, mesh = setting(space, p, b)
-        arrays: Any = (np.asarray(part) for part in mesh)
-        return cls(space, p, b, np.asarray(unit), Mesh(*arrays))
+    def of(cls, basis: Basis, p: Parameters, b: float) -> "Problem":
+        """Set up units and norms."""
+        return cls(basis, p, b, Setting(*map(np.asarray, setting(basis, p, b))))
+
+    @property
+    def unit(self) -> np.ndarray:
+        """Of energy [J], length [m], volume [m^3] and closure [rad]."""
+        return np.asarray(self.setting.unit)
 
     @property
     def load_unit(self) -> np.ndarray:
         """Units of the multipliers: 1, force [N], pressure [Pa], closing moment [J]."""
-        return np.asarray(self.unit[0] / self.unit)
+        return self.unit[0] / self.unit
+
+    @property
+    def loads(self) -> int:
+        """How many loads are unknowns: force, pressure and, where equal end radii are a condition, closing moment."""
+        return 3 if self.basis.closes else 2
 
     def evaluate(self, u: np.ndarray) -> Assembly:
         """The four dimensionless quantities and their derivatives."""
-        return evaluate(self.space, self.p, self.b, u)
+        return Assembly(*map(np.asarray, evaluate(self.basis, self.p, self.b, u)))
 
-    def metric(self) -> np.ndarray:
-        """Norm of a step: mean(dpsi^2) + (0.05 H0)^2 mean(dkappa^2), so that short waves count.
-
-        The part of theta that is itself unknown (free ends, splines) counts by its mean square.
-        """
-        weight, H0 = self.mesh.weights / self.mesh.weights.sum(), float(self.p.H0)
-        slope, bend = self.slopes
-        angle = self.mesh.angle
-        norm = slope.T * weight @ slope + (0.05 * H0) ** 2 * bend.T * weight @ bend + angle.T * weight @ angle
-        return np.asarray(norm)
-
-    @property
-    def slopes(self) -> tuple[np.ndarray, np.ndarray]:
-        """Change of (psi, kappa) at the points by each unknown, about the cylinder."""
-        factor = float(self.space.basis.slope_factor(self.p))
-        return factor * self.mesh.fields[:, 0], factor * self.mesh.fields[:, 1]
+    def moved(self, du: np.ndarray) -> float:
+        """Largest change of psi [rad] at the points by a change of the unknowns."""
+        return float(np.abs(self.setting.slopes @ du).max())

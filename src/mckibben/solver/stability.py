@@ -6,69 +6,87 @@ change neither length nor volume to first order, so the control does not matter 
 
 from typing import Any, NamedTuple
 
-import attrs
+import jax
+import jax.numpy as jnp
 import numpy as np
 from jaxtyping import Float
 
-from ..discretise.assemble import carry, localise
-from ..discretise.mesh import values
-from ..kernel import kernel
-from ..lazy import Array, jax, jnp
-from ..model.parameters import Number, Parameters
-from ..verdict import Modes
-from .problem import CLOSURE, LENGTH, VOLUME, Space
+from mckibben.compiled.arrays import Array
+from mckibben.compiled.kernel import kernel
+from mckibben.discretise.fields import Placed, place
+from mckibben.model.parameters import Number, Parameters
+from mckibben.results.verdict import Modes
+from mckibben.solver.held import GASES, conditions, rows_of
+from mckibben.solver.newton import holding
+from mckibben.solver.problem import Basis, Problem
+from mckibben.solver.system import Local, State, System, assemble, closing, localise, stiffness
+
+__all__ = ["Tangents", "binding", "count_modes", "negative", "null_space", "stiffnesses", "tangents", "weakest"]
 
 
-class Stiffness(NamedTuple):
-    """Tangents of n states: symmetric (or full) with the four gradients, antisymmetric with its one constraint."""
+class Tangents(NamedTuple):
+    """Tangents of states: symmetric (or full) with the gradients, antisymmetric with its one condition, or none."""
 
-    tangent: Float[Array, "n m m"]
-    gradients: Float[Array, "n 4 m"]
-    totals: Float[Array, "n 4"]
-    state: Float[Array, "n q d"]
-    antisymmetric: Float[Array, "n a a"]
-    closure: Float[Array, "n a"]
+    stiffness: Float[Array, "*n m m"]
+    gradients: Float[Array, "*n l m"]
+    antisymmetric: Float[Array, "*n a a"]
+    closure: Float[Array, "*n a"]
+
+
+def stiffnesses(basis: Basis, on: Placed, local: Local, s: System, together: bool = False) -> Tangents:
+    """Of one state, from its pointwise derivatives."""
+    if not basis.half:
+        return Tangents(s.stiffness, s.gradients, jnp.zeros((0, 0)), jnp.zeros(0))
+    return Tangents(
+        s.stiffness, s.gradients, stiffness(basis.even(), on, local, together), closing(basis, on, local)
+    )  # fmt: skip
 
 
 @kernel
-def stiffness(space: Space, p: Parameters, b: Number, u: Float[Array, "n m"], loads: Float[Array, "n 4"]) -> Stiffness:
-    """Tangent stiffness of states u under loads (1, force, pressure, closure), dimensionless."""
-    rows = jnp.concatenate([jnp.ones((len(u), 1)), -loads[:, 1:]], axis=1)[:, None]
-    mesh, form, density = space.mesh(p, b), space.basis.form, space.density(p)
-    local = jax.vmap(lambda u: localise(form, density, values(mesh, form, u, p), p))(u)
-    base = jax.vmap(carry, (None, 0, 0))(mesh, local, rows)
-    tangent, gradients = base.tangents[:, 0], base.gradients
-    if not space.half:
-        none = jnp.zeros((len(u), 0, 0))
-        return Stiffness(tangent, gradients, base.totals, base.state, none, jnp.zeros((len(u), 0)))
-    basis = attrs.evolve(space.line, modes="even")
-    even = jax.vmap(carry, (None, 0, 0))(basis.mesh(p, b), local, rows)
-    # antisymmetric theta is zero at mid-length: half of the closure, and the change at a free end
-    closure = 0.5 * even.gradients[:, CLOSURE]
-    if basis.ends == "free":
-        closure = closure.at[:, -1].add(1.0)
-    return Stiffness(tangent, gradients, base.totals, base.state, even.tangents[:, 0], closure)
+def tangents(
+    static: tuple[Basis, Any], p: Parameters, b: Number, states: State, which: Any, targets: Float[Array, " l"]
+) -> Tangents:
+    """Tangents of n states, with the stiffness of what answers a change of volume: that of the gas, if it is sealed."""
+    basis, own = static
+    on = place(basis, p, b)
+
+    def one(state: State) -> Tangents:
+        local = localise(basis, on, state)
+        s = assemble(basis, on, local, len(state.loads))
+        found = stiffnesses(basis, on, local, s)
+        A, weight = holding(s, conditions(own, which, targets, on.unit, s.values, state.loads))
+        return found._replace(stiffness=s.stiffness + (A[1:2].T * weight[1:2]) @ A[1:2])
+
+    return jax.vmap(one)(states)
 
 
-def count_modes(space: Space, s: Stiffness, pressure_held: bool = True) -> list[Modes]:
+def of_states(problem: Problem, u: np.ndarray, loads: np.ndarray, names: tuple[Any, ...] = ()) -> Tangents:
+    """Tangents of states u (n, m) under loads (n, l) on a problem; only the gas among `names` counts."""
+    gas = next((name for name in names if name in GASES), "pressure")
+    own, which = rows_of(("length", gas), problem.loads)
+    states = State(u, loads)
+    targets = np.zeros(problem.loads)
+    return Tangents(*map(np.asarray, tangents((problem.basis, own), problem.p, problem.b, states, which, targets)))
+
+
+def count_modes(problem: Problem, t: Tangents, pressure_held: bool = True) -> list[Modes]:
     """Modes of each state; with the volume held instead of the pressure its gradient is a constraint too."""
-    always = ([] if pressure_held else [VOLUME]) + ([CLOSURE] if space.basis.closes else [])
-    K, G, closure = np.asarray(s.tangent), np.asarray(s.gradients), np.asarray(s.closure)
-    lengths, forces = negative(K, G[:, [LENGTH, *always]]), negative(K, G[:, always])
-    sideways: list[Any] = [(None, None)] * len(K)
-    if closure.shape[1]:
-        sideways = negative(np.asarray(s.antisymmetric), closure[:, None])
+    always = ([] if pressure_held else [1]) + ([2] if problem.basis.closes else [])
+    lengths, forces = (negative(t.stiffness, t.gradients[:, rows]) for rows in ([0, *always], always))
+    sideways: list[Any] = [(None, None)] * len(t.stiffness)
+    if t.closure.shape[1]:
+        sideways = negative(t.antisymmetric, t.closure[:, None])
     return [
         Modes(length, force, anti, soft_length, soft_force, soft_anti)
         for (length, soft_length), (force, soft_force), (anti, soft_anti) in zip(lengths, forces, sideways, strict=True)
     ]
 
 
-def weakest(s: Stiffness) -> tuple[np.ndarray, float]:
+def weakest(t: Tangents) -> tuple[np.ndarray, float]:
     """The softest antisymmetric mode of the first state, in coefficients of the even modes, and its stiffness."""
-    closure = np.asarray(s.closure[0])[None]
+    closure = np.asarray(t.closure[0])[None]
     null = null_space(closure[binding(closure)])
-    values, vectors = np.linalg.eigh(null.T @ np.asarray(s.antisymmetric[0]) @ null)
+    values, vectors = np.linalg.eigh(null.T @ np.asarray(t.antisymmetric[0]) @ null)
     return np.asarray(null @ vectors[:, 0]), float(values[0])
 
 

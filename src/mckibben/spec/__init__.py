@@ -1,4 +1,4 @@
-"""What the user says: the muscle and the test, immutable and checked, in SI numbers."""
+"""The specification: the muscle and the test that a user describes, immutable and checked, in SI numbers."""
 
 from mckibben.spec.declared import describe, numbers, walk
 from mckibben.spec.errors import SpecError

@@ -19,7 +19,7 @@ V = TypeVar("V")
 
 
 class Reads(Generic[V]):
-    """How a type checker sees a field: it reads as a V and takes text, quantities, words and so on."""
+    """For type checkers: a field that gives a V when read, and may be set from text, quantities, words and so on."""
 
     if TYPE_CHECKING:
 
@@ -30,7 +30,7 @@ class Reads(Generic[V]):
 
 @attrs.frozen(kw_only=True)
 class Declared:
-    """What is known about one field. `low`/`high` are SI; an open bound is itself excluded."""
+    """What is known about one field. `low` and `high` are SI; `low_open` and `high_open` exclude the bound itself."""
 
     kind: str
     meaning: str
@@ -80,7 +80,7 @@ class Declared:
 
 
 def declare(declared: Declared) -> Any:
-    """An attrs field that reads, checks and describes itself by `declared`."""
+    """An attrs field whose values are read and checked as `declared` says."""
 
     def convert(value: Any, instance: Any, attribute: Any) -> Any:
         if value is None and (declared.optional or declared.default is None):
@@ -92,7 +92,7 @@ def declare(declared: Declared) -> Any:
 
 
 def evolved(value: T, **changes: Any) -> T:
-    """A copy of a spec object with some fields given anew, read and checked like any other."""
+    """A copy of a spec object with some fields changed; the new values are read and checked as when it was made."""
     copy: T = attrs.evolve(value, **changes)  # type: ignore[misc]  # made by attrs inside `spec`
     return copy
 
@@ -145,7 +145,7 @@ def numbers(value: Any, prefix: str = "") -> Iterator[tuple[str, Declared, Numbe
 
 
 def as_call(self: Any) -> str:
-    """A spec object as the call that makes it, in display units; fields that hold nothing are left out."""
+    """A spec object as the Python call that makes it, in display units; fields that are None or empty are left out."""
     parts = []
     for declared in describe(type(self)):
         value = getattr(self, declared.name)

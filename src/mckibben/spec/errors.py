@@ -1,4 +1,4 @@
-"""`SpecError`: the one error for what a user says, in one line that names the field and what to do."""
+"""`SpecError`: the error for anything wrong that a user gave, in one line that names the field and what to do."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ __all__ = ["MISSING", "SpecError", "near", "nearest"]
 
 
 class _Missing:
-    """Stands for a value that was not given, because None is a value."""
+    """Marks that no value was given. None will not do: a user may have given it."""
 
     def __repr__(self) -> str:
         return "<missing>"
@@ -22,11 +22,23 @@ MISSING = _Missing()
 
 
 class SpecError(ValueError):
-    """Invalid input.
+    """Invalid input, in one line that names the field, what was given, what is allowed and what to do.
 
-    field: dotted name ("braid.angle", "test.pressure"); value: what was given (MISSING if nothing);
-    allowed: what is permitted or what is wrong, as a phrase; advice: what to do, may be empty.
-    The message is one line: `braid.angle = 95 deg: must be above 0 deg and below 90 deg; <advice>`.
+    A ValueError. It is raised before anything is solved; that a muscle has no equilibrium is no error but a verdict.
+
+    Args:
+        field: dotted name of the field ("braid.angle", "test.pressure").
+        value: what was given; left out if nothing was.
+        allowed: what is allowed, or what is wrong, as a phrase.
+        advice: what to do; may be empty.
+
+    All four are attributes of the error.
+
+    >>> try:
+    ...     mk.presets.paper().replace("braid.angle", "95 deg")
+    ... except mk.SpecError as error:
+    ...     print(error.field, "|", error.allowed)
+    braid.angle | must be above 0 deg and below 90 deg
     """
 
     def __init__(self, field: str, value: object = MISSING, allowed: str = "", advice: str = "") -> None:

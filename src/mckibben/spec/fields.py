@@ -98,7 +98,7 @@ def count(
     default: Any = attrs.NOTHING,
     static: bool = False,
 ) -> Any:
-    """A whole number, such as how many fibres; `static` where a number in between would mean nothing."""
+    """A whole number, such as that of the fibres. With `static` it cannot be varied (such as the number of states)."""
     return declare(
         Declared(
             kind="count", read=_read_count, meaning=meaning, low=low, high=high, source=source, advice=advice,

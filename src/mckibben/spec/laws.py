@@ -26,7 +26,21 @@ def _check_modulus(field: str, modulus: Number, formula: str) -> None:
 
 @spec("chamber.law")
 class MooneyRivlin:
-    """Mooney-Rivlin: c1 (I1 - 3) + c2 (I2 - 3); initial shear modulus 2 (c1 + c2)."""
+    """Mooney-Rivlin: c1 (I1 - 3) + c2 (I2 - 3); initial shear modulus 2 (c1 + c2).
+
+    The paper's law (Eq. 25). I1 = l1^2 + l2^2 + l3^2 and I2 = l1^-2 + l2^-2 + l3^-2 in the principal stretches.
+
+    Args:
+        c1: factor of I1 - 3 [Pa]. A bare number is SI; text has its unit ("8.5 kPa").
+        c2: factor of I2 - 3 [Pa], 0 by default. One of the two may be negative.
+
+    Raises:
+        SpecError: if the initial shear modulus is not above 0.
+
+    >>> law = mk.MooneyRivlin(c1="8.5 kPa", c2="1.5 kPa")
+    >>> law.shear_modulus
+    20000.0
+    """
 
     name: ClassVar[str] = "mooney-rivlin"
     c1: Reads[float] = quantity("Pa", display="kPa", meaning="factor of I1 - 3", source="Eqs. (20-28)")
@@ -42,7 +56,20 @@ class MooneyRivlin:
 
 @spec("chamber.law")
 class NeoHookean:
-    """Neo-Hookean: c1 (I1 - 3); initial shear modulus 2 c1."""
+    """Neo-Hookean: c1 (I1 - 3); initial shear modulus 2 c1.
+
+    I1 = l1^2 + l2^2 + l3^2 in the principal stretches.
+
+    Args:
+        c1: factor of I1 - 3 [Pa], above 0: half the shear modulus, a sixth of Young's modulus.
+
+    Raises:
+        SpecError: for a value out of range or without its unit.
+
+    >>> chamber = mk.Chamber(thickness="1 mm", law=mk.NeoHookean(c1="8.5 kPa"))
+    >>> chamber.law.shear_modulus
+    17000.0
+    """
 
     name: ClassVar[str] = "neo-hookean"
     c1: Reads[float] = quantity("Pa", display="kPa", meaning="factor of I1 - 3", low=0.0, low_open=True)
@@ -54,7 +81,23 @@ class NeoHookean:
 
 @spec("chamber.law")
 class Yeoh:
-    """Yeoh: c1 (I1 - 3) + c2 (I1 - 3)^2 + c3 (I1 - 3)^3; initial shear modulus 2 c1."""
+    """Yeoh: c1 (I1 - 3) + c2 (I1 - 3)^2 + c3 (I1 - 3)^3; initial shear modulus 2 c1.
+
+    I1 = l1^2 + l2^2 + l3^2 in the principal stretches. With c2 < 0 and c3 > 0 the rubber softens, then stiffens
+    (Yeoh 1993).
+
+    Args:
+        c1: factor of I1 - 3 [Pa], above 0.
+        c2: factor of (I1 - 3)^2 [Pa], 0 by default.
+        c3: factor of (I1 - 3)^3 [Pa], 0 by default.
+
+    Raises:
+        SpecError: for a value out of range or without its unit.
+
+    >>> law = mk.Yeoh(c1="60 kPa", c2="-2 kPa", c3="0.3 kPa")
+    >>> law.shear_modulus
+    120000.0
+    """
 
     name: ClassVar[str] = "yeoh"
     c1: Reads[float] = quantity("Pa", display="kPa", meaning="factor of I1 - 3", low=0.0, low_open=True)
@@ -68,7 +111,22 @@ class Yeoh:
 
 @spec("chamber.law")
 class Ogden:
-    """Ogden: sum of mu_i/alpha_i (l1^a + l2^a + l3^a - 3), a = alpha_i; initial shear modulus sum(mu_i alpha_i)/2."""
+    """Ogden: sum of mu_i/alpha_i (l1^a + l2^a + l3^a - 3), a = alpha_i; initial shear modulus sum(mu_i alpha_i)/2.
+
+    l1, l2, l3 are the principal stretches (Ogden 1972). Some books write 2 mu_i/alpha_i^2 for mu_i/alpha_i: multiply
+    their mu_i by 2/alpha_i.
+
+    Args:
+        mu: list of moduli mu_i [Pa], one for each term.
+        alpha: list of exponents alpha_i, as many as mu, none of them 0.
+
+    Raises:
+        SpecError: if the lists are not equally long, an exponent is 0 or the initial shear modulus is not above 0.
+
+    >>> law = mk.Ogden(mu=["130 kPa", "-15 kPa"], alpha=[1.3, -2.0])
+    >>> law.shear_modulus
+    99500.0
+    """
 
     name: ClassVar[str] = "ogden"
     mu: Reads[tuple[float, ...]] = quantities("Pa", display="kPa", meaning="moduli mu_i")
@@ -90,7 +148,22 @@ class Ogden:
 
 @spec("chamber.law")
 class Gent:
-    """Gent: -mu Jm/2 ln(1 - (I1 - 3)/Jm), defined while I1 - 3 < Jm; initial shear modulus mu."""
+    """Gent: -mu Jm/2 ln(1 - (I1 - 3)/Jm), defined while I1 - 3 < Jm; initial shear modulus mu.
+
+    I1 = l1^2 + l2^2 + l3^2 in the principal stretches. The rubber locks, with a stress that grows without bound, as
+    I1 - 3 comes close to Jm (Gent 1996).
+
+    Args:
+        mu: initial shear modulus [Pa], above 0.
+        Jm: largest value of I1 - 3 (no unit), above 0.
+
+    Raises:
+        SpecError: for a value out of range or without its unit.
+
+    >>> muscle = mk.presets.paper().replace("chamber.law", mk.Gent(mu="17 kPa", Jm=12))
+    >>> muscle.chamber.law
+    Gent(mu='17 kPa', Jm=12.0)
+    """
 
     name: ClassVar[str] = "gent"
     mu: Reads[float] = quantity("Pa", display="kPa", meaning="initial shear modulus", low=0.0, low_open=True)
@@ -150,7 +223,24 @@ def _read_function(value: Any, field: str, declared: Declared) -> Any:
 class CustomLaw:
     """A law of the user's own: function(l1, l2, l3, constants) -> energy density [Pa], written with jax.numpy.
 
-    It must be zero and stationary at l1 = l2 = l3 = 1 (on incompressible states). It cannot be written to a file.
+    Among the stretches with l1 l2 l3 = 1, the energy must be least, and zero, at l1 = l2 = l3 = 1. A muscle with such a
+    law can be solved, varied and differentiated, but not written to a case file. docs/adding_a_law.md has an example
+    that is solved, and says how a law becomes part of the package.
+
+    Args:
+        function: function of (l1, l2, l3, constants) that gives the energy per unit reference volume [Pa], where
+            constants is a dict. JAX differentiates it twice: use jax.numpy in place of numpy, and no `if` on stretches.
+        constants: named numbers in SI units, without text. They are what sweeps and sensitivities can vary; numbers
+            written into the function are not.
+
+    Raises:
+        SpecError: if the function cannot be called, or a constant is not a bare number.
+
+    >>> def neo_hookean(l1, l2, l3, constants):
+    ...     return constants["c1"] * (l1**2 + l2**2 + l3**2 - 3.0)
+    >>> law = mk.CustomLaw(neo_hookean, constants={"c1": 8.5e3})
+    >>> law.function(1.0, 1.0, 1.0, law.constants)
+    0.0
     """
 
     name: ClassVar[str] = "custom"

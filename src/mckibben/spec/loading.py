@@ -56,13 +56,14 @@ _QUANTITIES: dict[str, dict[str, Any]] = {
 
 
 def controlled(name: str, *, held: bool = False, default: Any = attrs.NOTHING) -> Any:
-    """A field for one of the controlled quantities; with `held` only a constant will do."""
+    """A field for one of the controlled quantities; with `held` only one value is allowed."""
     display = DISPLAY.get(_QUANTITIES[name]["unit"], "")
     kind = "held" if held else "path"
     return declare(Declared(kind=kind, read=_read_path, default=default, display=display, **_QUANTITIES[name]))
 
 
 DEFAULT_POINTS = 21
+"""Number of states on a ramp: steps of 5 % of it."""
 
 
 def points_field() -> Any:
@@ -110,7 +111,31 @@ class Along(StrEnum):
 
 @spec("step")
 class Step:
-    """Part of a test with any two of length, force, pressure and volume controlled, or length or force and the gas."""
+    """Part of a test with any two of length, force, pressure and volume controlled, or length or force and the gas.
+
+    A step is a test by itself, or part of a `Protocol`. What is controlled goes along a path: one value ("1 bar", or a
+    number in SI units), a ramp ("0 to 1 bar", "0 to 1 to 0 bar"), a list of values, and in a protocol from the present
+    value ("to 20 N") or at it ("hold").
+
+    Args:
+        length: distance between the fittings [m], above 0.
+        force: axial force [N], positive where the muscle pulls its fittings together.
+        pressure: gauge pressure [Pa], not below minus one atmosphere (-101325 Pa).
+        volume: volume inside the braid [m^3], above 0.
+        gas: "isothermal" or "adiabatic": the gas inside as the step begins is sealed in, and pressure and volume follow
+            its law. In place of one of the two quantities; the other is length or force.
+        along: "values" (default): state by state at the values given. "branch": along the curve of states, also past
+            limit points, where the value that is varied turns back.
+        points: number of states; by default 21 on a ramp, as many as a list has, 1 if nothing varies.
+
+    Raises:
+        SpecError: for a value out of range or without its unit, more or fewer than two controls, or points that do not
+            visit every value named.
+
+    >>> step = mk.Step(volume="27.5 mL", pressure="0 to 1 bar", points=3)
+    >>> step.controls
+    ('pressure', 'volume')
+    """
 
     kind: ClassVar[str] = "step"
     length: Reads[Path | None] = controlled("length", default=None)
@@ -145,7 +170,22 @@ class Step:
 
 @spec("isometric")
 class Isometric:
-    """Length held, pressure varied."""
+    """Length held, pressure varied.
+
+    The paper's tests a and b (section III). It gives the force; pressures are visited in the order given.
+
+    Args:
+        length: distance between the fittings [m], one value.
+        pressure: gauge pressure [Pa]: a ramp such as "0 to 1 bar", a list, or one value.
+        points: number of states; by default 21 on a ramp, as many as a list has, 1 for one value.
+
+    Raises:
+        SpecError: for a value out of range or without its unit, or a length that varies.
+
+    >>> test = mk.Isometric(length="115 mm", pressure="0 to 1 bar", points=3)
+    >>> mk.run(mk.presets.paper(), test).force.round(2)  # N
+    array([  3.29,  52.36, 101.22])
+    """
 
     kind: ClassVar[str] = "isometric"
     length: Reads[Path] = controlled("length", held=True)
@@ -161,7 +201,22 @@ class Isometric:
 
 @spec("isobaric")
 class Isobaric:
-    """Pressure held, length varied."""
+    """Pressure held, length varied.
+
+    It gives the force over the length, which is how a muscle's strength falls as it contracts.
+
+    Args:
+        pressure: gauge pressure [Pa], one value.
+        length: distance between the fittings [m]: a ramp such as "115 mm to 60 mm", a list, or one value.
+        points: number of states; by default 21 on a ramp, as many as a list has, 1 for one value.
+
+    Raises:
+        SpecError: for a value out of range or without its unit, or a pressure that varies.
+
+    >>> test = mk.Isobaric(pressure="1 bar", length="115 mm to 105 mm", points=3)
+    >>> mk.run(mk.presets.paper(), test).force.round(2)  # N
+    array([101.22,  79.87,  61.77])
+    """
 
     kind: ClassVar[str] = "isobaric"
     pressure: Reads[Path] = controlled("pressure", held=True)
@@ -177,7 +232,22 @@ class Isobaric:
 
 @spec("isotonic")
 class Isotonic:
-    """Force held (a hanging weight), pressure varied."""
+    """Force held (a hanging weight), pressure varied.
+
+    It gives the length, and the contraction 1 - h/H0, over the pressure.
+
+    Args:
+        force: axial force [N], one value, positive for a weight that stretches the muscle.
+        pressure: gauge pressure [Pa]: a ramp such as "0.2 to 1 bar", a list, or one value.
+        points: number of states; by default 21 on a ramp, as many as a list has, 1 for one value.
+
+    Raises:
+        SpecError: for a value out of range or without its unit, or a force that varies.
+
+    >>> test = mk.Isotonic(force="20 N", pressure="0.2 to 1 bar", points=3)
+    >>> (1e3 * mk.run(mk.presets.paper(), test).length).round(2)  # mm
+    array([112.37,  95.5 ,  90.6 ])
+    """
 
     kind: ClassVar[str] = "isotonic"
     force: Reads[Path] = controlled("force", held=True)
@@ -193,7 +263,20 @@ class Isotonic:
 
 @spec("blocked-force")
 class BlockedForce:
-    """Length held at the braid's own (or another), pressure varied: the most the muscle can pull."""
+    """Length held at the braid's own (or another), pressure varied: the most the muscle can pull.
+
+    Args:
+        pressure: gauge pressure [Pa]: a ramp such as "0 to 1 bar", a list, or one value.
+        length: distance between the fittings [m], one value; by default the length H0 of the braid as made.
+        points: number of states; by default 21 on a ramp, as many as a list has, 1 for one value.
+
+    Raises:
+        SpecError: for a value out of range or without its unit, or a length that varies.
+
+    >>> test = mk.BlockedForce(pressure=["0.5 bar", "0.75 bar", "1 bar"])
+    >>> mk.run(mk.presets.paper(), test).force.round(2)  # N
+    array([3.33, 5.  , 6.66])
+    """
 
     kind: ClassVar[str] = "blocked-force"
     pressure: Reads[Path] = controlled("pressure")
@@ -210,7 +293,19 @@ class BlockedForce:
 
 @spec("free-contraction")
 class FreeContraction:
-    """No force, pressure varied: how far the muscle shortens by itself."""
+    """No force, pressure varied: how far the muscle shortens by itself.
+
+    Args:
+        pressure: gauge pressure [Pa]: a ramp such as "0 to 1 bar", a list, or one value.
+        points: number of states; by default 21 on a ramp, as many as a list has, 1 for one value.
+
+    Raises:
+        SpecError: for a value out of range or without its unit.
+
+    >>> test = mk.FreeContraction(pressure="0.2 to 1 bar", points=3)
+    >>> mk.run(mk.presets.paper(), test).contraction.round(4)  # 1 - h/H0, positive where shorter
+    array([0.0317, 0.0348, 0.0356])
+    """
 
     kind: ClassVar[str] = "free-contraction"
     pressure: Reads[Path] = controlled("pressure")
@@ -234,7 +329,20 @@ def _read_steps(value: Any, field: str, declared: Declared) -> tuple[Step, ...]:
 
 @spec("protocol")
 class Protocol:
-    """Several steps one after another, each starting where the last one ended."""
+    """Several steps one after another, each starting where the last one ended.
+
+    Args:
+        steps: a list of one or more `Step`. Their paths may use the present value: "hold", or "to 20 N". After a step
+            that cannot be finished no other is tried.
+
+    Raises:
+        SpecError: for an empty list, or anything in it that is not a Step.
+
+    >>> inflate = mk.Step(length="115 mm", pressure="0 to 1 bar", points=3)
+    >>> release = mk.Step(pressure="hold", length="to 105 mm", points=3)
+    >>> mk.run(mk.presets.paper(), mk.Protocol([inflate, release])).force.round(2)  # N
+    array([  3.29,  52.36, 101.22, 101.22,  79.87,  61.77])
+    """
 
     kind: ClassVar[str] = "protocol"
     steps: Reads[tuple[Step, ...]] = declare(

@@ -1,6 +1,6 @@
 """Changing a case's mapping before it is read: keys merged over a preset, `--set` overrides.
 
-Here everything is still plain TOML values; whether they make sense is for `spec/text.py` to say.
+Values are still plain TOML here and are not checked; `spec/text.py` does that afterwards.
 """
 
 from __future__ import annotations
@@ -10,8 +10,8 @@ import tomllib
 from collections.abc import Iterable, Mapping
 from typing import Any
 
+from mckibben.spec.change import changed_name, left_behind, still_assumed
 from mckibben.spec.errors import SpecError
-from mckibben.spec.muscle import CHANGED
 
 __all__ = ["apply_overrides", "merged"]
 
@@ -25,27 +25,16 @@ def merged(base: Mapping[Any, Any], over: Mapping[Any, Any]) -> dict[Any, Any]:
     touched: list[str] = []
     result = _merged(base, over, "", touched)
     if "assumed" not in over:
-        left = [name for name in base.get("assumed", ()) if not any(_within(name, path) for path in touched)]
-        result["assumed"] = left
+        result["assumed"] = list(still_assumed(base.get("assumed", ()), touched))
     if touched and "name" not in over and base.get("name"):
         result["name"] = changed_name(base["name"])
     return result
 
 
-def changed_name(name: str) -> str:
-    """Name of a muscle that is no longer what its name says."""
-    return name if name.endswith(CHANGED) else name + CHANGED
-
-
-def _within(name: str, path: str) -> bool:
-    return name == path or name.startswith(path + ".")
-
-
 def _merged(base: Mapping[Any, Any], over: Mapping[Any, Any], prefix: str, touched: list[str]) -> dict[Any, Any]:
     result = dict(base)
-    for key in _left_behind(prefix, over):
+    for key in left_behind(over, prefix):
         result.pop(key, None)
-        touched.append(prefix + key)
     if "angle_from" in over and "angle" not in over:
         raise SpecError("braid.angle_from", over["angle_from"], "is given without an angle", "give the angle with it")
     for key, value in over.items():
@@ -60,15 +49,6 @@ def _merged(base: Mapping[Any, Any], over: Mapping[Any, Any], prefix: str, touch
             result[key] = value
             touched.append(path)
     return result
-
-
-def _left_behind(prefix: str, over: Mapping[Any, Any]) -> tuple[str, ...]:
-    """Keys of the base that have no meaning beside those of `over`."""
-    if prefix != "braid.fibre.":
-        return ()
-    if any(name in over for name in ("B1", "B2", "B3")):
-        return () if "E" in over or "nu" in over else ("E", "nu")
-    return ("B1", "B2", "B3") if "E" in over or "nu" in over else ()
 
 
 def apply_overrides(mapping: Mapping[Any, Any], overrides: Iterable[str]) -> dict[Any, Any]:

@@ -6,17 +6,31 @@ import math
 from enum import StrEnum
 from typing import Any
 
-from mckibben.spec.declared import Reads, describe, evolved, walk
+from mckibben.spec.change import changed_muscle
+from mckibben.spec.declared import Reads, walk
 from mckibben.spec.errors import SpecError, nearest
 from mckibben.spec.fields import choice, count, part, quantity, spec, words
-from mckibben.spec.laws import CustomLaw, Gent, Law, MooneyRivlin, NeoHookean, Ogden, Yeoh
+from mckibben.spec.laws import LAWS, Law
 from mckibben.units import Number, is_traced, show
 
 __all__ = ["AngleFrom", "Braid", "Chamber", "Ends", "Fibre", "Muscle", "Natural"]
 
 
 class Ends(StrEnum):
-    """What the fittings hold: radius and slope (clamped), the radius only (pinned), nothing (free)."""
+    """What the fittings hold: radius and slope (clamped), the radius only (pinned), nothing (free).
+
+    With the braid angle theta and the slope angle psi of the wall, at both ends:
+
+    CLAMPED: theta = theta0 and psi = 0; the fibres are built into the fitting. The default.
+    PINNED: theta = theta0; the radius is held, the fibres swing freely.
+    FREE: the radius is free. Away from the ends the muscle is the uniform cylinder of the textbooks.
+
+    The words do as well: `ends="pinned"` is read as Ends.PINNED and compares equal to it. Another word is a SpecError.
+
+    >>> muscle = mk.presets.paper().replace("ends", "pinned")
+    >>> muscle.ends == mk.Ends.PINNED == "pinned"
+    True
+    """
 
     CLAMPED = "clamped"
     PINNED = "pinned"
@@ -37,19 +51,38 @@ class AngleFrom(StrEnum):
     AXIS = "axis"
 
 
-CHANGED = " (changed)"
-"""Added to the name of a muscle that is no longer what its name says."""
-
 _ROUND = ("diameter", "E", "nu")
+"""What a round solid fibre is given by."""
 _GIVEN = ("B1", "B2", "B3")
+"""What a fibre of any section is given by."""
 _ENERGY = "Eqs. (20-28)"
+"""Source of the stiffnesses: the energy of the paper."""
 
 
 @spec("braid.fibre")
 class Fibre:
     """One fibre: round and solid (diameter, E, nu), or any section by its stiffnesses (B1, B2, B3).
 
-    With B1, B2, B3 a diameter may be added; it then serves only to check that the fibres fit side by side.
+    A round solid fibre has B1 = B2 = E pi d^4/64 and B3 = G pi d^4/32 with G = E/(2 (1 + nu)). The energy that B1, B2,
+    B3 multiply is Eq. (20) of the paper. Fibres do not stretch. Give all of one way and nothing of the other.
+
+    Args:
+        diameter: diameter d of the fibre [m]. Beside B1, B2, B3 it may be given too; it then serves only to check that
+            the fibres fit side by side and when they touch.
+        E: Young's modulus [Pa].
+        nu: Poisson's ratio, above -1 and at most 0.5.
+        B1: bending stiffness in the tangent plane of the tube [N m^2].
+        B2: bending stiffness normal to the tube [N m^2].
+        B3: torsional stiffness [N m^2].
+        breaking_force: tension that breaks one fibre [N]. Only compared with the tension found: see `cautions`.
+        natural: shape of the fibre without stress, "helical" (as braided, the paper's) or "straight".
+
+    Raises:
+        SpecError: for a value out of range, both ways at once, or half of one.
+
+    >>> fibre = mk.Fibre(diameter="0.25 mm", E="3 GPa", nu=0.4)
+    >>> [round(1e6 * B, 3) for B in fibre.stiffnesses]  # in N mm^2
+    [0.575, 0.575, 0.411]
     """
 
     diameter: Reads[float | None] = quantity(
@@ -105,7 +138,26 @@ class Fibre:
 class Braid:
     """The tube of helical fibres, half of each hand, as made: every length and angle is that of the reference state.
 
-    The angle is stored from the parallels; angle_from="axis" is converted here and nowhere else.
+    Fibres are evenly spaced helices that cross at hinges (the paper's section II; radius and angle: Eq. 11).
+
+    Args:
+        radius: radius R0 of the fibres' centre lines [m].
+        length: length H0 between the fittings [m].
+        angle: braid angle theta0 [rad], above 0 and below 90 deg, between a fibre and the parallels (the circles around
+            the tube). Above 35.26 deg a long muscle contracts under pressure, below it extends (Eq. 31).
+        fibres: number N of fibres, both hands together: even.
+        fibre: what one fibre is, a `Fibre`.
+        angle_from: "axis" if the angle given is measured from the tube's axis, as in many other papers. It is
+            converted: the `angle` of the braid is always from the parallels.
+
+    Raises:
+        SpecError: for a value out of range, an odd number of fibres, or fibres so thick that they do not fit side by
+            side, N/2 d > 2 pi R0 sin(theta0).
+
+    >>> fibre = mk.Fibre(diameter="0.25 mm", E="3 GPa", nu=0.4)
+    >>> braid = mk.Braid(radius="12.5 mm", length="85 mm", angle="53 deg", angle_from="axis", fibres=56, fibre=fibre)
+    >>> round(braid.angle, 4)  # rad: 37 deg from the parallels
+    0.6458
     """
 
     radius: Reads[float] = quantity(
@@ -134,7 +186,7 @@ class Braid:
         self._check_room()
 
     def _check_room(self) -> None:
-        """Same-hand neighbours lie 2 pi R0 sin(theta0)/(N/2) apart across the fibre; less than a diameter cannot be."""
+        """Raise unless neighbours of one hand, 2 pi R0 sin(theta0)/(N/2) apart, are at least a diameter apart."""
         diameter = self.fibre.diameter
         if diameter is None or any(is_traced(x) for x in (diameter, self.radius, self.angle, self.fibres)):
             return
@@ -149,26 +201,61 @@ class Braid:
 
 
 def _rounded_down(value: float) -> float:
-    """Six digits, never above `value`, so that the advice given can be followed."""
+    """`value` to six digits, rounded down, so that advice of "at most" this value can be followed."""
     step = 10.0 ** (math.floor(math.log10(value)) - 5)
     return math.floor(value / step * (1.0 - 1e-12)) * step
 
 
 @spec("chamber")
 class Chamber:
-    """The incompressible elastomer tube inside the braid."""
+    """The incompressible elastomer tube inside the braid.
+
+    A thin wall that touches the braid everywhere and deforms with it. Its cross-section as made is
+    A0 = pi t0 (t0 + 2 R0), where R0 is the radius of the braid (Eq. 26).
+
+    Args:
+        thickness: wall thickness t0 as made [m], above 0.
+        law: hyperelastic law of the elastomer: `MooneyRivlin`, `NeoHookean`, `Yeoh`, `Ogden`, `Gent` or `CustomLaw`.
+
+    Raises:
+        SpecError: for a thickness out of range, or a law that is none of these.
+
+    >>> chamber = mk.Chamber(thickness="1 mm", law=mk.MooneyRivlin(c1="8.5 kPa"))
+    >>> chamber.thickness  # m
+    0.001
+    """
 
     thickness: Reads[float] = quantity(
         "m", meaning="wall thickness t0 as made", low=0.0, low_open=True, source="Eq. (26)"
     )
-    law: Law = part(MooneyRivlin, NeoHookean, Yeoh, Ogden, Gent, CustomLaw, meaning="hyperelastic law of the elastomer")
+    law: Law = part(*LAWS.values(), meaning="hyperelastic law of the elastomer")
 
 
 @spec("muscle")
 class Muscle:
     """A McKibben muscle: braid, chamber (None for a bare braid) and what the fittings hold.
 
-    `assumed` names the fields ("braid.fibres") whose values are assumptions; they are marked wherever they show.
+    A muscle never changes, and two with the same numbers are equal. Numbers are stored in SI units; text with a unit
+    ("12.5 mm") and pint quantities are read wherever a number is asked for. A muscle is a JAX pytree whose leaves are
+    its numbers.
+
+    Args:
+        braid: the tube of fibres, a `Braid`.
+        chamber: the elastomer tube, a `Chamber`, or None for a bare braid.
+        ends: what the fittings hold, one of `Ends`: "clamped" (default), "pinned" or "free".
+        name: a name for people, shown in tables and files.
+        assumed: names of the fields ("braid.fibres") whose values are assumptions; tables, pictures and files mark
+            them.
+
+    Raises:
+        SpecError: for a part of the wrong kind, or a name in `assumed` that is no field of this muscle.
+
+    >>> fibre = mk.Fibre(diameter="0.25 mm", E="3 GPa", nu=0.4)
+    >>> braid = mk.Braid(radius="12.5 mm", length="85 mm", angle="37 deg", fibres=56, fibre=fibre)
+    >>> chamber = mk.Chamber(thickness="1 mm", law=mk.MooneyRivlin(c1="8.5 kPa"))
+    >>> muscle = mk.Muscle(braid=braid, chamber=chamber, ends="clamped")
+    >>> muscle.replace("braid.angle", "36 deg").braid.fibres
+    56
     """
 
     braid: Braid = part(Braid, meaning="the tube of fibres")
@@ -186,31 +273,15 @@ class Muscle:
     def replace(self, field: str, value: Any) -> Muscle:
         """A new muscle with one field changed: muscle.replace("braid.angle", "36 deg").
 
-        The field, and all within it, leaves `assumed`; the name says that the muscle was changed. Raises SpecError for
-        an unknown name or a value out of range.
+        Args:
+            field: dotted name of the field, or of a whole part ("chamber.law").
+            value: the new value, as the field itself takes it.
+
+        Returns:
+            A new muscle. The field and all within it are no longer `assumed`, and " (changed)" is added to the name.
+
+        Raises:
+            SpecError: for an unknown name or a value out of range.
         """
-        kept = tuple(name for name in self.assumed if name != field and not name.startswith(field + "."))
-        # Names that would no longer exist must be gone before the new muscle is checked.
-        changed = _replaced(evolved(self, assumed=()), field.split("."), value, "")
-        if field == "assumed":
-            return changed
-        left = {name for name, _, _ in walk(changed)}
-        if changed.name and field != "name" and not changed.name.endswith(CHANGED):
-            changed = evolved(changed, name=changed.name + CHANGED)
-        return evolved(changed, assumed=tuple(name for name in kept if name in left))
-
-
-def _replaced(owner: Any, names: list[str], value: Any, prefix: str) -> Any:
-    head, rest = names[0], names[1:]
-    fields = {field.name: field for field in describe(type(owner)) if field.stored}
-    if head not in fields or (rest and fields[head].kind != "part"):
-        options = [prefix + name for name in fields] + [f"{prefix}{name}" for name, _, _ in walk(owner)]
-        full = prefix + ".".join(names)
-        raise SpecError(full, allowed="is no field of this muscle", advice=nearest(full, dict.fromkeys(options)))
-    if rest:
-        inner = getattr(owner, head)
-        if inner is None:
-            said = f"this muscle has no {head}"
-            raise SpecError(prefix + ".".join(names), value, said, f"give the whole {head} first")
-        value = _replaced(inner, rest, value, f"{prefix}{head}.")
-    return evolved(owner, **{head: value})
+        muscle: Muscle = changed_muscle(self, {field: value})
+        return muscle

@@ -79,7 +79,7 @@ class Path:
 
     @property
     def varies(self) -> bool:
-        """Whether more than one value is sought."""
+        """Whether the path has more than one value."""
         return self.mode in (PathMode.RAMP, PathMode.RAMP_FROM_PRESENT, PathMode.LIST)
 
     @property
@@ -90,8 +90,8 @@ class Path:
     def weights(self, points: int) -> NDArray[np.float64]:
         """Matrix W with values = W @ knots, knots being the waypoints (after the present value, if it is needed).
 
-        Every leg of a ramp gets the same number of points, the first ones one more where that does not come out even,
-        so that two quantities with as many legs turn together. Waypoints are hit exactly.
+        Waypoints are hit exactly. The points are shared evenly among the legs of a ramp, and the first legs get those
+        that are left over, so that two quantities with as many legs turn at the same points.
         """
         knots = len(self.waypoints) + self.needs_present
         if self.mode == PathMode.LIST and points != knots:

@@ -13,7 +13,7 @@ from typing import Any
 import attrs
 import tomli_w
 
-from mckibben import presets
+from mckibben.spec import presets
 from mckibben.spec.declared import Declared, describe
 from mckibben.spec.errors import MISSING, SpecError, nearest
 from mckibben.spec.laws import LAWS, CustomLaw
@@ -77,7 +77,7 @@ def test_from_mapping(mapping: Any) -> Test:
 
 
 def part_from_plain(item: Declared, value: Any, owner: str) -> Any:
-    """A part of a muscle (its law, its fibre) from its table, where `owner` is the field that holds it ("chamber")."""
+    """A part of a muscle (its law, its fibre) from its table. `owner` is the field that holds the part ("chamber")."""
     if isinstance(value, item.parts) or (value is None and item.default is None):
         return value
     return _value(item, value, owner, "muscle" if owner == "muscle" else f"muscle.{owner}")
@@ -105,7 +105,7 @@ def _known(table: Mapping[str, Any], options: tuple[str, ...], prefix: str) -> N
 
 
 def _name(table: dict[str, Any], key: str, field: str, options: Mapping[str, type]) -> str:
-    """Take the word that says which class a table is."""
+    """Take the word that names the class from a table: a `kind` or `name` among `options`."""
     name = table.pop(key, MISSING)
     known = ", ".join(options)
     if name is MISSING:
@@ -135,7 +135,7 @@ def _build(cls: type, mapping: Any, field: str, file_path: str) -> Any:
 
 
 def _value(item: Declared, value: Any, field: str, file_path: str) -> Any:
-    """What the constructor takes: parts and steps are built, everything else is read by the field itself."""
+    """A value as the constructor takes it: parts and steps are built here, the rest is read by the field itself."""
     inner = item.name if field == "muscle" else f"{field}.{item.name}"
     if item.kind == "steps":
         if not isinstance(value, (list, tuple)):
@@ -173,7 +173,7 @@ def to_toml(value: Case | Muscle | Test, *, allow_custom: bool = False) -> str:
 
 
 def plain(value: Any) -> Any:
-    """What a field holds, as exact TOML values. For a CustomLaw its name and constants stand."""
+    """The value of a field as TOML that reads back equal. Of a CustomLaw only names and constants are kept."""
     if value is None:
         return "none"
     if isinstance(value, CustomLaw):

@@ -1,22 +1,21 @@
 """Several fields of a muscle and its test changed at once: what a sweep varies.
 
 A field is named as everywhere else: "braid.angle", "chamber.law.c1", "ends"; those of the test begin with "test.", and
-those of a protocol's steps with "test.steps.0.". Changing fields together is not the same as one after another: more
+those of a protocol's steps with "test.steps.0.". Fields are changed together, and only the result is checked: more
 fibres may fit only because they are also thinner.
 """
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from typing import Any
 
-import attrs
-
-from mckibben.spec.declared import Declared, describe, evolved, walk
+from mckibben.spec.change import changed as put_in
+from mckibben.spec.change import changed_muscle
+from mckibben.spec.declared import Declared, describe, walk
 from mckibben.spec.errors import SpecError, nearest
 from mckibben.spec.loading import Test
-from mckibben.spec.merge import changed_name
-from mckibben.spec.muscle import Fibre, Muscle
+from mckibben.spec.muscle import Muscle
 from mckibben.spec.text import part_from_plain
 
 __all__ = ["changed", "declared_at", "full_name", "read"]
@@ -27,7 +26,6 @@ _FIXED = {
     "steps": "vary what is inside a step, such as test.steps.0.pressure",
     "assumed": "it says nothing of the muscle",
 }
-_STIFFNESSES, _MATERIAL = ("B1", "B2", "B3"), ("E", "nu")
 
 
 def full_name(name: str) -> str:
@@ -36,7 +34,7 @@ def full_name(name: str) -> str:
 
 
 def declared_at(muscle: Muscle, test: Test, name: str) -> Declared:
-    """What is known of the field of that name. SpecError if there is none, or if it cannot be varied."""
+    """The declaration of the field of that name. SpecError if there is none, or if it cannot be varied."""
     names = full_name(name).split(".")
     owner: Any = muscle
     if names[0] == "test":
@@ -81,60 +79,18 @@ def read(name: str, declared: Declared, value: Any) -> Any:
 def changed(muscle: Muscle, test: Test, values: Mapping[str, Any]) -> tuple[Muscle, Test]:
     """The muscle and the test with all of `values` put in at once. SpecError if they do not go together.
 
-    What was changed leaves `assumed`, and the name says that the muscle was changed, as with `Muscle.replace`. Giving
-    B1, B2, B3 replaces a fibre's E and nu, and the other way round.
+    What was changed leaves `assumed`, and the name says that the muscle was changed, as with `Muscle.replace`.
     """
-    of_test = [(tuple(name.split(".")[1:]), value) for name, value in values.items() if name.startswith("test.")]
     of_muscle = {name: value for name, value in values.items() if not name.startswith("test.")}
+    of_test = {name.removeprefix("test."): value for name, value in values.items() if name.startswith("test.")}
     if of_muscle:
-        muscle = _muscle(muscle, of_muscle)
+        muscle = changed_muscle(muscle, of_muscle)
     if of_test:
         try:
-            test = _changed(test, of_test, "test.")
+            test = put_in(test, of_test, "test.")
         except SpecError as error:
             own: str = type(test).__spec_path__  # type: ignore[union-attr]
             if error.field.startswith(own):
                 raise error.renamed("test" + error.field.removeprefix(own)) from error
             raise
     return muscle, test
-
-
-def _muscle(muscle: Muscle, values: dict[str, Any]) -> Muscle:
-    changes: list[tuple[tuple[str, ...], Any]] = [(tuple(name.split(".")), value) for name, value in values.items()]
-    kept = [name for name in muscle.assumed if not any(name == f or name.startswith(f + ".") for f in values)]
-    changes.append((("assumed",), tuple(kept)))
-    if muscle.name and "name" not in values:
-        changes.append((("name",), changed_name(muscle.name)))
-    result: Muscle = _changed(muscle, changes, "")
-    return result
-
-
-def _changed(owner: Any, changes: Sequence[tuple[tuple[str, ...], Any]], prefix: str) -> Any:
-    """A copy of a spec object, or a tuple of them, with some values anew, inner ones first."""
-    new: dict[str, Any] = {}
-    inner: dict[str, list[tuple[tuple[str, ...], Any]]] = {}
-    for (head, *rest), value in changes:
-        if rest:
-            inner.setdefault(head, []).append((tuple(rest), value))
-        else:
-            new[head] = value
-    if isinstance(owner, tuple):
-        steps = {int(head): _changed(owner[int(head)], some, f"{prefix}{head}.") for head, some in inner.items()}
-        return tuple(steps.get(k, step) for k, step in enumerate(owner))
-    names = attrs.fields_dict(type(owner)) if owner is not None else {}
-    for head in (*new, *inner):
-        if head not in names:
-            raise SpecError(f"{prefix}{head}", allowed="is no field of this muscle")
-    for head, some in inner.items():
-        new[head] = _changed(new.get(head, getattr(owner, head)), some, f"{prefix}{head}.")
-    if isinstance(owner, Fibre):
-        new |= dict.fromkeys(_left_behind(owner, new))
-    return evolved(owner, **new)
-
-
-def _left_behind(fibre: Fibre, new: Mapping[str, Any]) -> tuple[str, ...]:
-    """Fields of a fibre that have no meaning beside those that are given anew."""
-    material = any(name in new for name in _MATERIAL)
-    if any(name in new for name in _STIFFNESSES):
-        return () if material or not fibre.is_round else _MATERIAL
-    return _STIFFNESSES if material and not fibre.is_round else ()

@@ -1,1 +1,1 @@
-"""Pictures of results; they see only what a result carries, so a saved file plots without solving."""
+"""Pictures of results. They use only what a result holds, so that a saved file is drawn without solving."""

@@ -1,4 +1,4 @@
-"""Curves of any result: the natural picture of a test, profiles along the length, energies, load sharing."""
+"""Curves of any result: the picture for its kind of test, profiles along the length, energies, load sharing."""
 
 from __future__ import annotations
 
@@ -10,11 +10,11 @@ from matplotlib import colormaps
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from ..result import Result
-from ..sensitivities import Sensitivity
-from ..variables import FIELDS, STEP
-from . import style
-from .tornado import tornado
+from mckibben.results.result import Result
+from mckibben.results.sensitivity import Sensitivity
+from mckibben.results.variables import FIELDS, STEP
+from mckibben.view import style
+from mckibben.view.tornado import tornado
 
 MARKS = {"unstable": ("x", style.VERMILLION), "inadmissible": ("s", style.ORANGE)}
 """Marker and colour of states that exist and are not stable."""
@@ -25,7 +25,9 @@ PARTS = (
     ("energy_bending_2", "bending 2 (normal)", style.BLUE, "-"),
     ("energy_twist", "twist", style.GREEN, "--"),
 )
+"""Parts of the stored energy: variable, name in the legend, colour and line style."""
 FIELD_NAMES = {"r": "radius r", "theta": "braid angle θ", "psi": "slope ψ", "fibre_tension": "fibre tension T"}
+"""Short names of fields on axes; others go by their meaning."""
 
 
 def column(result: Result, name: str) -> np.ndarray:
@@ -56,11 +58,25 @@ def against(result: Result) -> tuple[np.ndarray, str]:
 
 
 def plot(result: Result | Sensitivity) -> Figure:
-    """The natural picture of a result, by the kind of its test; of a sensitivity the tornado chart.
+    """Draw a result, as the kind of its test asks for, or the tornado chart of a sensitivity.
 
     Isometric and blocked: force against pressure. Isobaric: force against contraction. Isotonic and free contraction:
     contraction (and length) against pressure. Protocol and step: force, length and pressure state by state, and force
     against length. States that are not stable are marked; states that were not reached are gaps, with a note.
+
+    Args:
+        result: what `run`, `load` or `sensitivity` gave. Nothing is solved.
+
+    Returns:
+        A matplotlib Figure, in mm, N, bar and per cent; `figure.savefig("curve.pdf")` writes it.
+
+    Raises:
+        Nothing: also a result without a single state gets a picture, which says why.
+
+    >>> curve = mk.run(mk.presets.paper(), mk.Isometric(length="115 mm", pressure="0 to 1 bar", points=3))
+    >>> figure = mk.plot(curve)
+    >>> figure.axes[0].get_xlabel(), figure.axes[0].get_ylabel()
+    ('Pressure (bar)', 'Force (N)')
     """
     if isinstance(result, Sensitivity):
         return tornado(result)
@@ -178,7 +194,7 @@ def colours(count: int) -> list[Any]:
 
 
 def state_name(result: Result, step: int) -> str:
-    """What tells a state from the others in a legend."""
+    """Name of a state in a legend: its pressure, its length, or number, length and pressure."""
     h, P = column(result, "length")[step], column(result, "pressure")[step]
     name = driven(result)
     if name == "pressure":
@@ -219,7 +235,7 @@ def tension(result: Result, steps: Sequence[int] | None = None) -> Figure:
 
 
 def energy(result: Result) -> Figure:
-    """Stored energies and, for the balance, the work done since the first state on top of its energy."""
+    """Stored energies, and as a check the first state's energy plus the work done since, which should be the total."""
     figure = style.new_figure(style.COLUMN, 2.9)
     axes = figure.add_subplot()
     x, name = against(result)

@@ -7,8 +7,8 @@ import xarray as xr
 from matplotlib.figure import Figure
 from matplotlib.ticker import MaxNLocator
 
-from ..spec.text import muscle_from_mapping
-from . import style
+from mckibben.spec.text import muscle_from_mapping
+from mckibben.view import style
 
 
 def region(limits: xr.Dataset) -> Figure:

@@ -1,7 +1,7 @@
 """The muscle in three dimensions: surfaces of revolution and fibres in parallel projection.
 
-Only what faces the viewer is drawn, painted from back to front, so vector files look right. The picture in plain 2-D
-axes of equal aspect: no empty margins, and it can stand inside any other figure.
+Only what faces the viewer is drawn, from back to front, so that it looks right in vector files. The picture is in plain
+2-D axes of equal aspect, without empty margins, and so can be part of any other figure.
 """
 
 from __future__ import annotations
@@ -18,12 +18,14 @@ from matplotlib.collections import Collection, LineCollection, PolyCollection
 from matplotlib.colors import Normalize, to_rgba
 from numpy.typing import NDArray
 
-from ..result import Result
-from ..spec import Muscle
+from mckibben.results.result import Result
+from mckibben.spec import Muscle
 
 Floats = NDArray[np.float64]
 MM = 1e3
+"""mm per m."""
 FITTING = "0.72"
+"""Grey of the end fittings."""
 FACETS = 40
 """Facets along the length and around the visible half."""
 
@@ -120,7 +122,8 @@ def draw_surface(
     field = np.interp(vm[:, 0], tube.v, np.zeros_like(tube.v) if values is None else np.asarray(values))
     colours = ScalarMappable(norm or Normalize(float(np.min(field)), float(np.max(field))), colormaps[cmap])
     base = np.tile(to_rgba(colour), (len(field), 1)) if values is None else colours.to_rgba(field)
-    light = 0.86 + 0.14 * np.clip(0.85 * facing + 0.5 * normal_screen[..., 1], 0.0, 1.0)  # faint: colours must be read
+    # Faint shading, so that colours can be compared with the bar.
+    light = 0.86 + 0.14 * np.clip(0.85 * facing + 0.5 * normal_screen[..., 1], 0.0, 1.0)
     rgba = np.repeat(base[:, None, :], facing.shape[1], axis=1)
     rgba[..., :3] *= light[..., None]
     seen = facing > -1e-3
@@ -147,13 +150,13 @@ def draw_fibres(
 
 
 def ink_on(rgba: Floats) -> tuple[float, float, float, float]:
-    """One faint ink for lines upon colours (n, 4): white where most of them are dark, else black."""
+    """Colour (red, green, blue, opacity) of faint lines on colours (n, 4): white if most are dark, else black."""
     light = rgba[:, :3] @ np.array([0.299, 0.587, 0.114])
     return (1.0, 1.0, 1.0, 0.4) if float(np.median(light)) < 0.5 else (0.0, 0.0, 0.0, 0.4)
 
 
 def draw_rings(axes: Axes, tube: Tube, view: View, *, width: float = 0.8, colour: str = "0.25") -> None:
-    """The end circles, the hidden half thin."""
+    """The circles at both ends; of the one further away only the half that faces the viewer."""
     phi = np.linspace(0.0, 2.0 * np.pi, 181)
     for v in (tube.v[0], tube.v[-1]):
         screen = view.place(tube.point(v, phi))
@@ -200,13 +203,13 @@ def frame(axes: Axes, margin: float = 0.02) -> None:
 
 
 def _add(axes: Axes, collection: Collection) -> None:
-    """Add what stays inside the axes anyway: the layout need not measure its thousands of paths."""
+    """Add a collection that the layout does not measure: it lies inside the axes, and has thousands of paths."""
     collection.set_in_layout(False)
     axes.add_collection(collection)
 
 
 def _even(tube: Tube) -> Floats:
-    """Material coordinates at even steps along the meridian, a few closer to the ends."""
+    """Material coordinates at nearly even steps along the meridian, somewhat closer together at the ends."""
     if len(tube.v) <= 3:
         return tube.v
     arc = np.concatenate([[0.0], np.cumsum(np.hypot(np.diff(tube.r), np.diff(tube.z)))])
@@ -216,6 +219,6 @@ def _even(tube: Tube) -> Floats:
 
 
 def _runs(points: Floats, seen: Sequence[bool] | NDArray[np.bool_]) -> list[Floats]:
-    """Pieces of a polyline over consecutive seen points."""
+    """Pieces of a polyline, each of consecutive points that are seen."""
     edges = np.flatnonzero(np.diff(np.concatenate([[0], np.asarray(seen, int), [0]])))
     return [points[a:b] for a, b in zip(edges[::2], edges[1::2], strict=True) if b - a > 1]

@@ -5,6 +5,7 @@ Figures are made without pyplot, so nothing global is kept: pictures can be draw
 
 from __future__ import annotations
 
+import io
 import os
 import textwrap
 from collections.abc import Iterable
@@ -17,29 +18,49 @@ from matplotlib.axes import Axes
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 
-from ..spec import Muscle, SpecError
-from ..units import DISPLAY, from_si
+from mckibben import disk
+from mckibben.spec import Muscle, SpecError
+from mckibben.units import DISPLAY, from_si
 
-COLUMN, PAGE = 3.5, 7.16
-"""Widths [inch] of a column and of a page of a two-column paper."""
+COLUMN = 3.5
+"""Width [inch] of a column of a two-column paper."""
+PAGE = 7.16
+"""Width [inch] of a page of a two-column paper."""
 
-BLACK, ORANGE, SKY, GREEN = "#000000", "#E69F00", "#56B4E9", "#009E73"
-YELLOW, BLUE, VERMILLION, PURPLE = "#F0E442", "#0072B2", "#D55E00", "#CC79A7"
+BLACK = "#000000"
+ORANGE = "#E69F00"
+SKY = "#56B4E9"
+GREEN = "#009E73"
+YELLOW = "#F0E442"
+BLUE = "#0072B2"
+VERMILLION = "#D55E00"
+PURPLE = "#CC79A7"
+"""The colours of Okabe and Ito, which colour-blind readers can tell apart."""
 LINES = (BLUE, VERMILLION, GREEN, PURPLE, ORANGE, SKY, BLACK)
-"""Colours of Okabe and Ito, which colour-blind readers can tell apart; yellow is too faint for lines."""
+"""Colours of lines in the order of use. Without yellow, which is too faint."""
 
-DENSITY_MESH, DENSITY_CHAMBER, SEQUENCE = "viridis", "cividis", "viridis"
-"""Colour maps of even perceived steps."""
+DENSITY_MESH = "viridis"
+"""Colour map of the energy density of the fibres: even steps to the eye."""
+DENSITY_CHAMBER = "cividis"
+"""Colour map of the energy density of the chamber: even steps too, and not to be taken for that of the fibres."""
+SEQUENCE = "viridis"
+"""Colour map of a sequence of states."""
 
 GREY = "0.45"
-LABEL, TICK, NOTE = 8.0, 7.0, 5.5
-"""Font sizes [pt] at print size."""
+"""Colour of notes and of lines that mark where a step ends: dark enough to be read."""
+LABEL = 8.0
+"""Font size [pt] of axis labels and titles: that of captions in a two-column paper."""
+TICK = 7.0
+"""Font size [pt] of tick labels and legends."""
+NOTE = 5.5
+"""Font size [pt] of notes below a picture, the smallest that prints well."""
 
 _WRITING = Lock()
+"""matplotlib's settings are global: only one thread at a time may change them to write a file."""
 
 
 def new_figure(width: float = COLUMN, height: float = 2.6) -> Figure:
-    """An empty figure of a given size [inch] that no global state knows of."""
+    """An empty figure of a given size [inch]. pyplot does not know it, so that it need not be closed."""
     figure = Figure(figsize=(width, height), layout="constrained")
     FigureCanvasAgg(figure)
     return figure
@@ -99,7 +120,7 @@ def note(figure: Figure, text: str) -> None:
 
 
 def assumption_note(figure: Figure, muscle: Muscle) -> None:
-    """Say in the picture which values of the muscle are assumptions; nothing if there are none."""
+    """Add a note that names the values of the muscle that are assumed, if there are any."""
     groups = (
         ("fibre count", "braid.fibres"),
         ("fibre values", "braid.fibre."),
@@ -124,34 +145,32 @@ def _within(name: str, start: str) -> bool:
 
 
 def save(figure: Figure, stem: str | os.PathLike[str], formats: Iterable[str] = ("pdf", "png")) -> tuple[Path, ...]:
-    """Write a figure as STEM.pdf and STEM.png (200 dpi); a reader never sees half a file.
+    """Write a figure as STEM.pdf and STEM.png (200 dpi), over files of these names, each whole or not at all.
 
     Returns the paths. Raises SpecError for a place that cannot be written.
     """
-    paths = []
-    for kind in formats:
-        path = Path(f"{os.fspath(stem)}.{kind}")
-        part = path.with_name(f".{path.name}.{os.getpid()}.part")
+    paths = [Path(f"{os.fspath(stem)}.{kind}") for kind in formats]
+    for path in paths:
         try:
             path.parent.mkdir(parents=True, exist_ok=True)
-            try:
-                _write(figure, part, kind)
-                os.replace(part, path)
-            finally:
-                part.unlink(missing_ok=True)
         except OSError as error:
-            raise SpecError("picture", str(path), f"cannot be written: {error.strerror or error}") from error
-        paths.append(path)
+            raise SpecError(str(path), allowed=f"cannot be written: {error.strerror or error}") from error
+        disk.write(path, picture(figure, path.suffix[1:]), force=True)
     return tuple(paths)
 
 
-def _write(figure: Figure, path: Path, kind: str) -> None:
-    """One file without a date, so that equal pictures are equal files; fonts as journals want them (TrueType)."""
+def picture(figure: Figure, kind: str) -> bytes:
+    """A figure as the bytes of a file, "pdf", "png" (200 dpi) or "svg".
+
+    It holds no date, so that equal pictures are equal files, and fonts as journals want them (TrueType).
+    """
     nothing = {"pdf": {"CreationDate": None}, "svg": {"Date": None}}.get(kind)
+    content = io.BytesIO()
     with _WRITING:
         before = matplotlib.rcParams["pdf.fonttype"]
         matplotlib.rcParams["pdf.fonttype"] = 42
         try:
-            figure.savefig(path, format=kind, dpi=200, metadata=nothing)
+            figure.savefig(content, format=kind, dpi=200, metadata=nothing)
         finally:
             matplotlib.rcParams["pdf.fonttype"] = before
+    return content.getvalue()

@@ -8,22 +8,26 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from ..sensitivities import ANGLES, Sensitivity
-from ..units import show
-from . import style
+from mckibben.results.sensitivity import ANGLES, Sensitivity
+from mckibben.units import show
+from mckibben.view import style
 
-ROW, MARGIN = 0.2, 1.15
-"""Height [inch] of a bar with its gap, and of everything else."""
-LABELS, NUMBER = 1.7, 0.5
-"""Widths [inch] of the names on the left and of a number beside its bar."""
+ROW = 0.2
+"""Height [inch] of a bar with its gap: room for a line of text."""
+MARGIN = 1.15
+"""Height [inch] of everything but the bars: title, axis and notes."""
+LABELS = 1.7
+"""Width [inch] kept for the names on the left."""
+NUMBER = 0.5
+"""Width [inch] kept for the number beside a bar."""
 MARK = " *"
-"""After the name of a number that is assumed."""
+"""Put after the name of a number that is assumed."""
 
 
 def tornado(sensitivity: Sensitivity) -> Figure:
     """Bars of per cent per per cent, sorted by the first result, one panel for each result.
 
-    Assumed numbers carry a star. Numbers and results of which there is no per cent, being zero, are named below.
+    Assumed numbers carry a star. A number or a result that is zero has no per cents and is named below the bars.
     """
     data = sensitivity.data
     share, results = data["relative"].values, [str(name) for name in data["result"].values]

@@ -1,0 +1,142 @@
+"""`mckibben plot` and `mckibben reproduce`: pictures of a saved result, and of the paper's tests."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from enum import StrEnum
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+
+from mckibben.app.console import command, examples, say, table
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
+    from mckibben.results.result import Result
+
+__all__ = ["PLOT", "REPRODUCE", "plot", "reproduce"]
+
+PLOT = examples(
+    "mckibben plot out.nc",
+    "mckibben plot out.nc -o force.pdf",
+    "mckibben plot out.nc --kind tension -o tension.svg",
+)
+REPRODUCE = examples(
+    "mckibben reproduce", "mckibben reproduce -o paper --force", "mckibben reproduce --measured a=lab.csv"
+)
+PICTURES = {".png": "picture", ".pdf": "print", ".svg": "web"}
+
+
+class Kind(StrEnum):
+    """What to draw."""
+
+    auto = "auto"
+    profiles = "profiles"
+    tension = "tension"
+    energy = "energy"
+
+
+@command
+def plot(
+    file: Annotated[Path, typer.Argument(metavar="FILE.nc", help="a result saved by mckibben run -o FILE.nc")],
+    output: Annotated[
+        Path | None,
+        typer.Option("--output", "-o", metavar="PICTURE", help="the picture: .png, .pdf or .svg [default: FILE.png]"),
+    ] = None,
+    kind: Annotated[
+        Kind, typer.Option(help="auto: the curve of the test; profiles: radius and angle along the muscle")
+    ] = Kind.auto,
+    force: Annotated[bool, typer.Option("--force", help="replace the picture if it exists")] = False,
+) -> None:
+    """Draw a saved result, without solving anything again."""
+    from mckibben import disk
+    from mckibben.files import store
+
+    target = file.with_suffix(".png") if output is None else output
+    suffix = store.suffix_of(target, PICTURES)
+    disk.check_target(target, force)
+    result = store.load_result(file)
+    figure = _figure(result, kind)
+    from mckibben.view import style
+
+    disk.write(target, style.picture(figure, suffix[1:]), force)
+    say(f"drawn: {target}")
+
+
+def _figure(result: Result, kind: Kind) -> Figure:
+    import matplotlib
+
+    matplotlib.use("Agg")  # draws to files only, without a window
+    from mckibben.view import curves
+
+    draw: dict[Kind, Callable[[Result], Figure]] = {
+        Kind.auto: curves.plot,
+        Kind.profiles: curves.profiles,
+        Kind.tension: curves.tension,
+        Kind.energy: curves.energy,
+    }
+    return draw[kind](result)
+
+
+@command
+def reproduce(
+    output: Annotated[Path, typer.Option("--output", "-o", metavar="DIR", help="the folder of the pictures")] = Path(
+        "out"
+    ),
+    force: Annotated[bool, typer.Option("--force", help="replace pictures that exist")] = False,
+    measured: Annotated[
+        list[str] | None,
+        typer.Option(metavar="CASE=FILE.csv", help="a measured curve to draw beside case a, b, c or d"),
+    ] = None,
+) -> None:
+    """Run the tests of the paper, draw its figures, and sum up how the numbers compare.
+
+    A measured curve is a CSV file with the columns pressure (in bar) and value (force in N, or change of length over
+    length). No measured data come with this package.
+    """
+    curves = dict(_pair(text) for text in measured or ())
+    _make_folder(output)
+    from mckibben.app.solving import solving
+
+    with solving("reproducing") as watch:
+        from mckibben.paper import reproduce as making
+
+        made = making.reproduce(output, watch=watch, measured=curves, force=force)
+    rows = [
+        (
+            row.case,
+            row.what,
+            row.unit,
+            *("-" if x is None else f"{x:.5g}" for x in (row.model, row.formula, row.stated)),
+        )
+        for row in made.rows
+    ]
+    columns = ("case", "what", "model", "Eq. (31)", "stated")
+    say(table(columns, rows, title="The paper's actuator", right=(2, 3, 4), whole=()))
+    say("model: this package; Eq. (31): the formula without stored energy; stated: the values of docs/theory.md")
+    say("assumed, not measured: " + ", ".join(made.muscle.assumed))
+    for path in made.pictures:
+        say(str(path))
+
+
+def _pair(text: str) -> tuple[str, str]:
+    name, equals, path = text.partition("=")
+    if not (equals and name and path):
+        from mckibben.spec.errors import SpecError
+
+        raise SpecError("--measured", text, "must be CASE=FILE.csv", 'write it like "a=lab.csv"')
+    return name.strip(), path.strip()
+
+
+def _make_folder(folder: Path) -> None:
+    """Make the folder of the pictures and see that files can be made in it, before anything takes time."""
+    from mckibben import disk
+    from mckibben.spec.errors import SpecError
+
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+    except OSError as error:
+        raise SpecError(str(folder), allowed=f"cannot be made: {error.strerror or error}") from error
+    disk.check_target(folder / "picture.pdf", force=True)

@@ -1,0 +1,188 @@
+"""`mckibben check`, `presets` and `info`: what a case, a preset, a file or the installation holds, without solving."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated, Any
+
+import typer
+
+from mckibben.app.console import command, examples, say, table
+
+if TYPE_CHECKING:
+    from mckibben.sweeps.sweepfile import SweepCase
+
+__all__ = ["CHECK", "INFO", "PRESETS", "check", "info", "presets"]
+
+CHECK = examples("mckibben check case.toml", 'mckibben check case.toml --set braid.angle="36 deg"')
+PRESETS = examples("mckibben presets", "mckibben presets paper", "mckibben presets paper --toml > case.toml")
+INFO = examples("mckibben info", "mckibben info out.nc", "mckibben info out.zarr")
+
+
+@command
+def check(
+    case: Annotated[Path, typer.Argument(metavar="CASE.toml", help="the case file: a muscle and, maybe, a test")],
+    overrides: Annotated[
+        list[str] | None,
+        typer.Option("--set", metavar="NAME=VALUE", help='change a value of the case, such as braid.angle="36 deg"'),
+    ] = None,
+) -> None:
+    """Check a case file and show the muscle and the test as understood, without solving.
+
+    Every field is shown with its unit and, where known, its source; what is assumed is marked. Numbers that follow from
+    them, such as the longest possible length, come after.
+    """
+    from mckibben.sweeps.sweepfile import read_sweep
+
+    asked = read_sweep(case, overrides or (), required=False)
+    found = asked.case
+    from mckibben.app import fields
+    from mckibben.experiments import foresee
+
+    name = f' "{found.muscle.name}"' if found.muscle.name else ""
+    columns = ("field", "value", "meaning", "source")
+    rows = list(fields.muscle_rows(found.muscle))
+    marks, sources = fields.numbered(row[3] for row in rows)
+    marked = [(*row[:3], mark) for row, mark in zip(rows, marks, strict=True)]
+    say(table(columns, marked, title=f"Muscle{name}", whole=(0, 1, 3)))
+    for source in sources:
+        say(source)
+    say()
+    if found.test is not None:
+        say(table(columns[:3], list(fields.test_rows(found.test)), title="Test"))
+    if asked.over is not None or asked.designs is not None:
+        say(table(("field", "values"), _swept(asked), title="Sweep"))
+    say(table(("derived", *columns[1:3]), list(foresee.derived(found.muscle)), title="What follows"))
+    for note in foresee.beyond(found.muscle, found.test):
+        say(note)
+    if found.test is None:
+        say('There is no test: add a [test] table, such as kind = "isometric".')
+
+
+def _swept(asked: SweepCase) -> list[tuple[str, str]]:
+    from mckibben.sweeps.plan import plan
+
+    assert asked.case.test is not None  # read_sweep raises without a test
+    wanted = plan(asked.case.muscle, asked.case.test, asked.over, asked.designs, chunk=asked.chunk)
+    rows = [(varied.field, _range(varied.coordinate, varied.unit)) for varied in wanted.varied]
+    return [*rows, ("designs in all", str(len(wanted)))]
+
+
+@command
+def presets(
+    name: Annotated[str | None, typer.Argument(metavar="[NAME]", help="one preset; all are listed without it")] = None,
+    toml: Annotated[bool, typer.Option("--toml", help="print a case file with the preset, ready to run")] = False,
+) -> None:
+    """List the named muscles, or show one: each value with its source or marked as assumed."""
+    from mckibben.spec import presets as known
+    from mckibben.spec.errors import SpecError
+
+    if name is None:
+        if toml:
+            raise SpecError("--toml", allowed="needs the name of a preset", advice="one of " + ", ".join(known.names()))
+        lines = [(key, (getattr(known, key).__doc__ or "").split("\n")[0]) for key in known.names()]
+        say(table(("preset", "what it is"), lines))
+        return
+    from mckibben.app import fields
+
+    muscle = known.get(name)
+    if toml:
+        typer.echo(fields.case_text(name), nl=False)
+        return
+    rows = [(field, value, source) for field, value, _, source in fields.muscle_rows(muscle)]
+    say(table(("field", "value", "source"), rows, title=f'Muscle "{name}"', whole=(0, 1)))
+
+
+@command
+def info(
+    file: Annotated[Path | None, typer.Argument(metavar="[FILE]", help="a saved result (.nc) or sweep (.zarr)")] = None,
+) -> None:
+    """Show the versions and the machine, or with a file what it holds."""
+    look = _sweep if file is not None and file.suffix.lower() == ".zarr" else _content
+    say(table(("", ""), _installation() if file is None else look(file)))
+
+
+def _installation() -> list[tuple[str, str]]:
+    import os
+    import platform
+    import sys
+    from importlib.metadata import entry_points, version
+
+    from mckibben.compiled import folder
+
+    place = folder.ready()
+    packages = ("mckibben", "jax", "jaxlib", "numpy", "scipy", "xarray", "h5netcdf", "h5py", "matplotlib")
+    rows = [(name, version(name)) for name in packages]
+    rows += [("python", f"{platform.python_version()} ({sys.executable})"), ("platform", platform.platform())]
+    found = ", ".join(sorted({"cpu", *(plugin.name for plugin in entry_points(group="jax_plugins"))}))  # not by JAX:
+    rows.append(("JAX platforms", os.environ.get("JAX_PLATFORMS") or found))  # importing it takes a second
+    if place is None:
+        why = "MCKIBBEN_CACHE is off" if folder.off() else f"{folder.folder()} cannot be written, or others can"
+        return [*rows, ("compiled functions", f"not kept: {why}")]
+    count, size = folder.size(place)
+    return [*rows, ("compiled functions", f"{count} ({size / 2**20:.1f} MB) in {place}")]
+
+
+def _content(file: Path) -> list[tuple[str, str]]:
+    from collections import Counter
+
+    from mckibben.app import fields
+    from mckibben.files import store
+    from mckibben.units import from_si
+
+    result = store.load_result(file)
+    about = result.attributes
+    verdicts = Counter(result.verdict)
+    rows = [
+        ("file", str(file)),
+        ("holds", f"{about['title']}, {len(result)} states"),
+        ("verdicts", ", ".join(f"{count} {verdict}" for verdict, count in verdicts.items())),
+        ("made", f"{about['date']} with {about['versions']}"),
+        ("assumed", about["assumed"] or "nothing"),
+    ]
+    rows += [("warning", warning) for warning in about["warnings"].splitlines() if warning]
+    rows += [(f"test {name}", value) for name, value, _ in fields.test_rows(result.test)]
+    for name, unit in (("length", "mm"), ("force", "N"), ("pressure", "bar"), ("volume", "mL")):
+        values = from_si(result.column(name), unit)
+        values = values[values == values]  # without NaN
+        rows.append((name, f"{values.min():.5g} to {values.max():.5g} {unit}" if len(values) else "none reached"))
+    return rows
+
+
+def _sweep(file: Path) -> list[tuple[str, str]]:
+    import numpy as np
+
+    from mckibben.app.sweep import counts
+    from mckibben.sweeps import store as sweeps
+    from mckibben.units import from_si
+
+    data = sweeps.load(file)
+    about = data.attrs
+    rows = [
+        ("store", str(file)),
+        ("holds", f"{about['title']}, {data.sizes['step']} states each"),
+        ("designs", ", ".join(f"{count} {status}" for status, count in counts(data).items())),
+        ("made", f"from {about['date']} with {about['versions']}"),
+        ("tolerance", f"{about['tolerance']:g}"),
+        ("assumed", about["assumed"] or "nothing"),
+    ]
+    for name, coordinate in data.coords.items():
+        if name != "step":
+            rows.append((str(name), _range(coordinate.values, coordinate.attrs.get("units", ""))))
+    for name, unit in (("length", "mm"), ("force", "N"), ("pressure", "bar"), ("peak_fibre_tension", "N")):
+        values = data[name].values
+        values = from_si(values[~np.isnan(values)], unit)
+        rows.append((name, f"{values.min():.5g} to {values.max():.5g} {unit}" if len(values) else "none reached"))
+    return rows
+
+
+def _range(values: Any, unit: str) -> str:
+    """The values of a swept field in words: their number and either the range or all of them."""
+    from mckibben.units import DISPLAY, from_si
+
+    if values.dtype.kind not in "if":
+        words = list(dict.fromkeys(str(value) for value in values))
+        return f"{len(values)}: " + ", ".join(words[:6]) + (", ..." if len(words) > 6 else "")
+    shown = "" if unit == "1" else DISPLAY.get(unit, unit)
+    numbers = from_si(values, shown) if shown else values
+    return f"{len(values)}: {numbers.min():.6g} to {numbers.max():.6g} {shown}".rstrip()

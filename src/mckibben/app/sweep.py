@@ -1,0 +1,114 @@
+"""`mckibben sweep`: one test on many muscles, from a sweep file."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated, Any
+
+import typer
+
+from mckibben.app.console import COMPLETE, INCOMPLETE, INTERRUPTED, command, complain, examples, say, show_json, table
+
+if TYPE_CHECKING:
+    from xarray import Dataset
+
+__all__ = ["EPILOG", "counts", "sweep"]
+
+EPILOG = examples(
+    "mckibben sweep sweep.toml -o out.zarr",
+    "mckibben sweep sweep.toml -o out.zarr --workers 4",
+    "mckibben sweep sweep.toml -o out.zarr --scheduler tcp://head:8786",
+    "mckibben info out.zarr",
+)
+
+
+@command
+def sweep(
+    file: Annotated[Path, typer.Argument(metavar="SWEEP.toml", help="a case file with a [sweep] table")],
+    overrides: Annotated[
+        list[str] | None,
+        typer.Option("--set", metavar="NAME=VALUE", help='change a value of the base, such as braid.angle="36 deg"'),
+    ] = None,
+    output: Annotated[
+        Path | None,
+        typer.Option("--output", "-o", metavar="STORE.zarr", help="where the results go [default: SWEEP.zarr]"),
+    ] = None,
+    force: Annotated[bool, typer.Option("--force", help="delete another sweep that is there")] = False,
+    workers: Annotated[
+        int | None,
+        typer.Option(min=0, help="processes on this machine, 0 for this one alone [default: one per core]"),
+    ] = None,
+    scheduler: Annotated[
+        str | None, typer.Option(metavar="ADDRESS", help="a Dask scheduler that is running, such as tcp://head:8786")
+    ] = None,
+    tolerance: Annotated[float, typer.Option(help="relative error aimed at, from 1e-10 to 1e-2")] = 1e-6,
+    as_json: Annotated[
+        bool, typer.Option("--json", help="print a summary as one JSON object, and nothing else")
+    ] = False,
+    quiet: Annotated[bool, typer.Option("--quiet", "-q", help="print nothing but errors")] = False,
+) -> int:
+    """Run the test of a sweep file on all its designs, into a Zarr store.
+
+    Results are kept as they come. A sweep that was interrupted or killed goes on from there when the same command is
+    given again, to the same numbers. A design that cannot be is noted and spoils no other.
+
+    The exit code is 0 if every design is complete, 2 for wrong input, 3 if some are not, and 4 if something outside,
+    such as a full disk, ended the sweep.
+    """
+    from mckibben.sweeps.sweepfile import read_sweep
+
+    asked = read_sweep(file, overrides or ())
+    target = file.with_suffix(".zarr") if output is None else output
+    from mckibben.app.solving import solving
+
+    said = [0, 0]
+    try:
+        with solving("sweep", hidden=quiet or as_json, unit="designs") as watch:
+            from mckibben.sweeps.sweep import sweep as run
+
+            def told(done: int, total: int) -> None:
+                said[:] = done, total
+                watch(done, total)
+
+            assert asked.case.test is not None  # read_sweep raises without a test
+            data = run(
+                asked.case.muscle, asked.case.test, asked.over, designs=asked.designs, tolerance=tolerance, to=target,
+                force=force, workers=workers, scheduler=scheduler, chunk=asked.chunk, watch=told,
+            )  # fmt: skip
+    except KeyboardInterrupt:
+        kept = "nothing was begun" if not said[1] else f"about {said[0]} of {said[1]} designs are in {target}"
+        complain(f"interrupted: {kept}; the same command goes on from there")
+        return INTERRUPTED
+    found = counts(data)
+    if as_json:
+        show_json(_summary(data, found, str(target)))
+    elif not quiet:
+        _show(data, found, str(target))
+    return COMPLETE if set(found) == {"complete"} else INCOMPLETE
+
+
+def counts(data: Dataset) -> dict[str, int]:
+    """Number of designs by status, the most frequent first; a status that no design has is left out."""
+    import numpy as np
+
+    words = [word.replace("_", " ") for word in data["status"].attrs["flag_meanings"].split()]
+    values = np.asarray(data["status"].attrs["flag_values"])
+    status = data["status"].values
+    found = {word: int((status == value).sum()) for word, value in zip(words, values, strict=True)}
+    return {word: count for word, count in sorted(found.items(), key=lambda item: -item[1]) if count}
+
+
+def _summary(data: Dataset, found: dict[str, int], target: str) -> dict[str, Any]:
+    sizes = {str(name): int(size) for name, size in data.sizes.items()}
+    return {"file": target, "complete": set(found) == {"complete"}, "dimensions": sizes, "designs": found}
+
+
+def _show(data: Dataset, found: dict[str, int], target: str) -> None:
+    status, reason = data["status"].values.ravel(), data["reason"].values.ravel()
+    values = dict(zip(data["status"].attrs["flag_meanings"].split(), data["status"].attrs["flag_values"], strict=True))
+    rows = []
+    for word, count in found.items():
+        which = status == values[word.replace(" ", "_")]
+        rows.append((word, str(count), str(reason[which][0])))
+    say(table(("status", "designs", "the first because"), rows, right=(1,), title=data.attrs["title"]))
+    say(f"saved to {target}: mckibben.load({target!r}) or xarray.open_zarr({target!r})")

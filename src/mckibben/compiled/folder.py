@@ -1,0 +1,102 @@
+"""The folder of compiled functions, kept between processes: where it is, how full it may be. Does without JAX."""
+
+from __future__ import annotations
+
+import hashlib
+import os
+import platform
+import stat
+from collections.abc import Iterator
+from contextlib import suppress
+from functools import cache
+from importlib.metadata import version
+from pathlib import Path
+
+__all__ = ["LIMIT", "SUFFIX", "folder", "off", "private", "processor", "ready", "size"]
+
+SUFFIX = ".kernel"
+LIMIT = 256 * 2**20
+"""Bytes above which the oldest files are deleted, until half is left."""
+
+
+def off() -> bool:
+    """Whether the user wants nothing to be kept."""
+    return os.environ.get("MCKIBBEN_CACHE") == "off"
+
+
+def folder() -> Path:
+    """Where compiled functions are kept, if they are.
+
+    MCKIBBEN_CACHE, else `kernels` in JAX_COMPILATION_CACHE_DIR, else the user's folder of cached files, with one folder
+    for each version of JAX and each processor.
+    """
+    given, of_jax = os.environ.get("MCKIBBEN_CACHE"), os.environ.get("JAX_COMPILATION_CACHE_DIR")
+    if given and not off():
+        return Path(given)
+    if of_jax:
+        return Path(of_jax) / "kernels"
+    from platformdirs import user_cache_dir
+
+    return Path(user_cache_dir("mckibben", appauthor=False)) / f"jax-{version('jax')}-{processor()}"
+
+
+def ready() -> Path | None:
+    """The folder, made where it is missing and cleared where it is too full; None where nothing can be kept."""
+    if off():
+        return None
+    place = folder()
+    if not private(place):
+        return None
+    if size(place)[1] > LIMIT:
+        _clear(place)
+    return place
+
+
+def private(place: Path) -> bool:
+    """Whether the user can put files there and nobody else can; the folder is made if missing.
+
+    What is kept is machine code, which nobody else may slip in.
+    """
+    try:
+        place.mkdir(mode=0o700, parents=True, exist_ok=True)
+        about = place.stat()
+    except OSError:
+        return False
+    if not os.access(place, os.W_OK | os.X_OK):
+        return False
+    if os.name != "posix":
+        return True
+    return about.st_uid == os.getuid() and not about.st_mode & (stat.S_IWGRP | stat.S_IWOTH)
+
+
+@cache
+def processor() -> str:
+    """The processor with its extensions: code compiled for another one may not run, and home folders are shared."""
+    features = platform.processor().encode()
+    with suppress(OSError):
+        lines = Path("/proc/cpuinfo").read_bytes().splitlines()
+        features = next((line for line in lines if line.lower().startswith((b"flags", b"features"))), features)
+    return f"{platform.machine() or 'unknown'}-{hashlib.sha256(features).hexdigest()[:8]}"
+
+
+def size(place: Path) -> tuple[int, int]:
+    """Number of kept functions and their bytes."""
+    sizes = [about.st_size for _, about in _entries(place)]
+    return len(sizes), sum(sizes)
+
+
+def _clear(place: Path) -> None:
+    left = size(place)[1]
+    for file, about in sorted(_entries(place), key=lambda entry: entry[1].st_mtime):
+        if left <= LIMIT // 2:
+            return
+        with suppress(OSError):
+            file.unlink()
+        left -= about.st_size
+
+
+def _entries(place: Path) -> Iterator[tuple[Path, os.stat_result]]:
+    with suppress(OSError):
+        for file in place.glob(f"*{SUFFIX}"):
+            with suppress(OSError):  # deleted by another process in the meantime
+                yield file, file.stat()

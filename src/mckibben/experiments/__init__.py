@@ -1,0 +1,1 @@
+"""The calls: run, solve, limits, force maps, responses and sensitivities."""

@@ -1,0 +1,140 @@
+"""`cautions()`: what a real muscle may do that is not in the model, told before solving or with the result."""
+
+from functools import partial
+from typing import Any, NamedTuple
+
+import jax.numpy as jnp
+import numpy as np
+
+from mckibben.compiled.arrays import Array
+from mckibben.compiled.kernel import kernel
+from mckibben.model.chamber import chamber_pull
+from mckibben.model.cylinder import cylinder_angle, cylinder_force
+from mckibben.model.kinematics import radius
+from mckibben.model.parameters import Number, Parameters, parameters
+from mckibben.model.point import Point
+from mckibben.model.wrinkling import wrinkling
+from mckibben.spec import Muscle, SpecError, Step
+from mckibben.units import show
+
+THICK_WALL = 0.2
+"""Wall over radius above which a thin wall is a coarse assumption: stretches vary by about this much across it."""
+SLENDER = 5.0
+"""Length over diameter above which a muscle in compression may bow like a column."""
+
+Columns = dict[str, np.ndarray]
+
+
+def cautions(muscle: Muscle, *, length: Any, pressure: Any) -> tuple[str, ...]:
+    """Cautions about a target before anything is solved, judged by the uniform cylinder of the target length.
+
+    Thick wall, wrinkling, jammed fibres, a column in compression, and fibre tension above the breaking force if one is
+    given. A result carries the cautions of its own states.
+
+    Args:
+        muscle: the specification.
+        length: distance between the fittings [m], a number or text with a unit.
+        pressure: gauge pressure [Pa], likewise.
+
+    Returns:
+        A tuple of sentences; empty if there is nothing to say.
+
+    Raises:
+        SpecError: for a length or pressure that is not one value in range.
+
+    >>> thick = mk.presets.paper().replace("chamber.thickness", "4 mm")
+    >>> mk.cautions(thick, length="115 mm", pressure="1 bar")
+    ('chamber.thickness is 0.32 of the radius: the model takes the wall as thin (below 0.2)',)
+    """
+    step = Step(length=length, pressure=pressure)
+    if step.points != 1 or any(getattr(step, name).needs_present for name in step.controls):
+        raise SpecError("cautions", allowed="length and pressure must be one value each")
+    h, P = (float(getattr(step, name).waypoints[0]) for name in ("length", "pressure"))
+    cylinder = predicted(parameters(muscle), np.asarray(h), np.asarray(P))
+    theta, r, force, pull = (float(x) for x in cylinder[2:])
+    steps = {name: np.array([float(value)]) for name, value in (("length", h), ("pressure", P), ("force", force))}
+    fields = {name: np.array([[float(value)]]) for name, value in (("theta", theta), ("r", r), ("fibre_tension", pull))}
+    return (*before(muscle, h, P), *after(muscle, steps, fields))
+
+
+class Predicted(NamedTuple):
+    """What the uniform cylinder of the target length says."""
+
+    index: Number  #: of wrinkling
+    wave: Number  #: its length [m]
+    theta: Number  #: braid angle [rad]
+    r: Number  #: radius [m]
+    force: Number  #: [N]
+    pull: Number  #: tension of a fibre [N]
+
+
+@partial(kernel, static_argnums=())
+def predicted(p: Parameters, length: Array, pressure: Array) -> Predicted:
+    """The cylinder of a given length [m] at a gauge pressure [Pa]."""
+    theta = cylinder_angle(length, p)
+    at, force = Point.cylinder(theta), cylinder_force(theta, pressure, p)
+    r = radius(at, p)
+    pull = (force + jnp.pi * r**2 * pressure - chamber_pull(at, p)) / (p.N * jnp.sin(theta))
+    return Predicted(*wrinkling(length, pressure, p), theta, r, force, pull)
+
+
+def before(muscle: Muscle, length: float | None, pressure: float) -> list[str]:
+    """Cautions that a result cannot tell: wall thickness, and wrinkling of the cylinder of the target length [m]."""
+    notes = thick_wall(muscle)
+    if length is not None:
+        found = predicted(parameters(muscle), np.asarray(length), np.asarray(pressure))
+        index, wave = float(found.index), float(found.wave)
+        if index < -1.0:
+            at = f"{show(length, 'm', 4)} and {show(pressure, 'Pa', 4)}"
+            notes.append(
+                f"a tube of this kind is expected to wrinkle at {at} (index {index:.2f}, below -1), in waves of about "
+                f"{show(wave, 'm', 2)}: more pressure or stiffer fibres prevent it"
+            )
+    return notes
+
+
+def thick_wall(muscle: Muscle) -> list[str]:
+    """The chamber's wall against the thin-wall assumption."""
+    if muscle.chamber is None or muscle.chamber.thickness <= THICK_WALL * muscle.braid.radius:
+        return []
+    ratio = muscle.chamber.thickness / muscle.braid.radius
+    return [f"chamber.thickness is {ratio:.2f} of the radius: the model takes the wall as thin (below {THICK_WALL:g})"]
+
+
+def after(muscle: Muscle, steps: Columns, fields: Columns) -> list[str]:
+    """Cautions that a result gives rise to: jamming, column buckling, broken fibres; each with its first state."""
+    return [*jamming(muscle, steps, fields), *column(steps, fields), *breaking(muscle, steps, fields)]
+
+
+def jamming(muscle: Muscle, steps: Columns, fields: Columns) -> list[str]:
+    """Neighbouring fibres of one hand come to touch: (N/2) d against 2 pi r sin(theta)."""
+    fibre = muscle.braid.fibre
+    if fibre.diameter is None:
+        return []
+    room = 2.0 * np.pi * fields["r"] * np.sin(fields["theta"]) / (0.5 * muscle.braid.fibres * fibre.diameter)
+    return _first((room < 1.0).any(axis=1), steps, "neighbouring fibres touch: the braid jams, which the model ignores")
+
+
+def column(steps: Columns, fields: Columns) -> list[str]:
+    """A slender muscle in compression may bow sideways, which an axisymmetric model cannot."""
+    slender = steps["length"] > SLENDER * 2.0 * np.nanmin(np.where(np.isnan(fields["r"]), np.inf, fields["r"]), axis=1)
+    said = f"compressed and longer than {SLENDER:g} diameters: it may bow like a column, which the model ignores"
+    return _first(slender & (steps["force"] < 0.0), steps, said)
+
+
+def breaking(muscle: Muscle, steps: Columns, fields: Columns) -> list[str]:
+    """Fibre tension above the breaking force that was given."""
+    strength = muscle.braid.fibre.breaking_force
+    if strength is None:
+        return []
+    said = f"the fibre tension exceeds the breaking force of {show(strength, 'N', 4)}"
+    return _first((fields["fibre_tension"] > strength).any(axis=1), steps, said)
+
+
+def _first(hit: Any, steps: Columns, said: str) -> list[str]:
+    states = np.flatnonzero(hit)
+    if not len(states):
+        return []
+    k = int(states[0])
+    at = f"{show(float(steps['length'][k]), 'm', 4)}, {show(float(steps['pressure'][k]), 'Pa', 4)}"
+    return [f"from state {k} ({at}) on: {said}"]

@@ -1,0 +1,101 @@
+"""Many states of many muscles at once: a last Newton step, what they are worth, and the numbers that a sweep keeps."""
+
+from functools import partial
+from typing import Any, NamedTuple
+
+import jax
+import jax.numpy as jnp
+from jaxtyping import Bool, Float, Int
+
+from mckibben.compiled.arrays import Array
+from mckibben.compiled.kernel import kernel
+from mckibben.discretise.fields import Placed
+from mckibben.measure.read import read, stable
+from mckibben.solver.batch import moved, newton
+from mckibben.solver.problem import Basis
+from mckibben.solver.system import State, assemble, localise, residual
+
+__all__ = ["Appraised", "Polished", "appraised", "polished"]
+
+
+class Appraised(NamedTuple):
+    """One state, in SI units."""
+
+    numbers: dict[str, Array]  #: by the names of a sweep's variables
+    largest_slope: Array  #: of the meridian [rad]
+    length: Bool[Array, ""]  #: stable with the length held
+    force: Bool[Array, ""]  #: stable with the force held
+    antisymmetric: Bool[Array, ""]  #: stable against antisymmetric disturbances
+
+
+def appraise(basis: Basis, on: Placed, state: State) -> Appraised:
+    """A state, as it is."""
+    local = localise(basis, on, state)
+    s = assemble(basis, on, local, len(state.loads), together=True)
+    under, seen = stable(basis, on, local, s, jnp.array(False), together=True), read(basis, on, state)
+    numbers = seen.numbers | {
+        "peak_fibre_tension": seen.fields["fibre_tension"].max(), "largest_radius": seen.fields["r"].max(),
+        "residual": residual(s, state.loads), "conserved_variation": seen.conserved_variation,
+        "coefficient_tail": seen.coefficient_tail,
+    }  # fmt: skip
+    return Appraised(numbers, seen.largest_slope, *under)
+
+
+@kernel
+def appraised(basis: Basis, on: Placed, states: State, count: Int[Array, ""]) -> Appraised:
+    """The first `count` states (n, batch, ...) of every muscle; leaves lead with (n, batch) and are zero beyond."""
+
+    def at(k: Any) -> Appraised:
+        some = jax.tree.map(lambda rows: rows[k], states)
+        return jax.vmap(partial(appraise, basis))(on, some)
+
+    n = len(states.u)
+    blank = jax.tree.map(lambda s: jnp.zeros((n, *s.shape), s.dtype), jax.eval_shape(at, 0))
+    return jax.lax.fori_loop(
+        0, count, lambda k, rows: jax.tree.map(lambda row, one: row.at[k].set(one), rows, at(k)), blank
+    )
+
+
+class Polished(NamedTuple):
+    """States (n, batch, ...) after Newton's last step, and how large it was."""
+
+    states: State
+    change: Float[Array, "n batch"]  #: largest change of psi [rad]
+
+
+@partial(kernel, static_argnames=("most",))
+def polished(
+    basis: Basis,
+    on: Placed,
+    states: State,
+    change: Float[Array, "n batch"],
+    which: Int[Array, "2"],
+    targets: Float[Array, "n batch 2"],
+    count: Int[Array, ""],
+    close: Float[Array, ""],
+    good: Bool[Array, " batch"],
+    *,
+    most: int = 3,
+) -> Polished:
+    """Newton steps, state by state, until the last one is `close` for every good muscle; at most `most`.
+
+    Where it is so already nothing is done: the error that is left is about the square of the last step.
+    """
+
+    def step(now: tuple[State, Array, Array], target: Array) -> tuple[State, Array, Array]:
+        state, _, tries = now
+        by = jax.vmap(lambda on, state, target: newton(basis, on, which, state, target).step)(on, state, target)
+        far = jax.vmap(lambda on, du: moved(basis, on, du))(on, by.u)
+        return jax.tree.map(jnp.add, state, by), far, tries + 1
+
+    def at(k: Any, rows: Polished) -> Polished:
+        now = (jax.tree.map(lambda row: row[k], rows.states), rows.change[k], jnp.zeros((), int))
+        state, change, _ = jax.lax.while_loop(
+            lambda now: (now[2] < most) & (jnp.where(good, now[1], 0.0) > close).any(),
+            lambda now: step(now, targets[k]),
+            now,
+        )
+        states = jax.tree.map(lambda row, one: row.at[k].set(one), rows.states, state)
+        return Polished(states, rows.change.at[k].set(change))
+
+    return jax.lax.fori_loop(0, count, at, Polished(states, change))

@@ -1,0 +1,134 @@
+"""What solved states are worth: everything read off them, their modes and verdicts, an estimate of their error."""
+
+from typing import Any
+
+import attrs
+import numpy as np
+
+from mckibben.measure.judge import Judgement, judge, shape_of
+from mckibben.measure.meridian import meridian
+from mckibben.measure.read import NODES, Reading, Stable, read_many
+from mckibben.model.parameters import Parameters
+from mckibben.results.verdict import Modes, Shape
+from mckibben.solver.follow import padded
+from mckibben.solver.held import GASES
+from mckibben.solver.problem import Basis, Problem
+from mckibben.solver.stability import count_modes, of_states
+from mckibben.solver.system import State
+
+__all__ = ["PLAIN_SLOPE", "Survey", "error_of", "errors", "padded_states", "prepare", "survey"]
+
+ROUNDING = 1e-11
+"""Relative error that rounding leaves in a force or length at best."""
+PLAIN_SLOPE = 1.5
+"""Slope [rad] of the meridian below which no shape is anything but ordinary."""
+ODD = ("psi", "u1")
+"""Fields that change sign at mid-length of a symmetric state."""
+PLAIN = Modes(0, 0, 0, float("nan"), float("nan"), float("nan"))
+"""Of a state that is stable in every way: nothing was counted."""
+
+
+@attrs.frozen
+class Survey:
+    """n states on one problem."""
+
+    problem: Problem
+    u: np.ndarray  #: (n, m)
+    loads: np.ndarray  #: (n, l) dimensionless
+    numbers: dict[str, np.ndarray]  #: (n) by the names of a result's variables, SI
+    half: dict[str, np.ndarray]  #: fields (n, nodes) as they were read
+    residual: np.ndarray  #: (n) imbalance over the size of its terms
+    modes: list[Modes]
+    verdicts: list[Judgement]
+
+    @property
+    def error(self) -> np.ndarray:
+        """Estimated relative error of force and length (n)."""
+        return np.asarray(self.numbers["error_estimate"])
+
+    @property
+    def fields(self) -> dict[str, np.ndarray]:
+        """Fields over the full length (n, NODES)."""
+        if not self.problem.basis.half:
+            return self.half
+        return {name: _mirrored(name, values) for name, values in self.half.items()}
+
+    @property
+    def v(self) -> np.ndarray:
+        """Material coordinate of the fields' points [m]."""
+        problem = self.problem
+        return np.asarray(problem.basis.coordinate(problem.basis.uniform(NODES), problem.p, problem.b))
+
+
+def _mirrored(name: str, half: np.ndarray) -> np.ndarray:
+    """A field over the full length from its first half, mid-length included."""
+    back = half[:, -2::-1]
+    if name == "z":
+        return np.concatenate([half, 2.0 * half[:, -1:] - back], axis=1)
+    return np.concatenate([half, -back if name in ODD else back], axis=1)
+
+
+def prepare(basis: Basis, p: Parameters, b: float, count: int) -> None:
+    """Have what a survey of `count` states calls compiled in the background (see `compiled.kernel`)."""
+    states = State(np.empty((count, basis.unknowns)), np.empty((count, 3 if basis.closes else 2)))
+    read_many.prepare(basis, p, b, padded_states(states), np.array(False))
+
+
+def padded_states(states: State) -> State:
+    """States repeated up to 1 or a power of two from 32, so that few shapes are compiled."""
+    return states if len(states.u) == 1 else State(padded(states.u), padded(states.loads))
+
+
+def read_states(problem: Problem, u: np.ndarray, loads: np.ndarray, volume: bool) -> tuple[Reading, Stable, np.ndarray]:
+    """Readings of states u (n, m) under loads (n, l), as NumPy arrays."""
+    n = len(u)
+    states = padded_states(State(u, loads))
+    reading, stable, left = read_many(problem.basis, problem.p, problem.b, states, np.array(volume))
+    cut = Reading(
+        {name: np.asarray(values)[:n] for name, values in reading.numbers.items()},
+        {name: np.asarray(values)[:n] for name, values in reading.fields.items()},
+        *(np.asarray(values)[:n] for values in reading[2:]),
+    )
+    return cut, Stable(*(np.asarray(part)[:n] for part in stable)), np.asarray(left)[:n]
+
+
+def survey(problem: Problem, u: np.ndarray, loads: np.ndarray, held: tuple[Any, ...]) -> Survey:
+    """Look at states u (n, m) under loads (n, l), found with `held` controlled."""
+    reading, stable, residual = read_states(problem, u, loads, "volume" in held)
+    certain = stable.length & stable.force & stable.antisymmetric
+    if any(name in GASES for name in held):  # they were taken to be at held pressure
+        certain = np.zeros_like(certain)
+    modes = [PLAIN] * len(u)
+    if not problem.basis.half:
+        modes = [attrs.evolve(PLAIN, antisymmetric=None, softest_antisymmetric=None)] * len(u)
+    open_ones = np.flatnonzero(~certain)
+    if len(open_ones):
+        states = padded_states(State(u[open_ones], loads[open_ones]))
+        counted = count_modes(problem, of_states(problem, *states[:2], held), pressure_held="volume" not in held)
+        for k, one in zip(open_ones, counted, strict=False):
+            modes[k] = one
+    shapes = [Shape.ORDINARY] * len(u)
+    steep = np.flatnonzero(~(reading.largest_slope < PLAIN_SLOPE))
+    for k, line in zip(steep, zip(*meridian(problem, u[steep]), strict=True), strict=True):
+        shapes[k] = shape_of(*line)
+    verdicts = [judge(mode, shape, "length" in held) for mode, shape in zip(modes, shapes, strict=True)]
+    variation, tail = reading.conserved_variation, reading.coefficient_tail
+    numbers = reading.numbers | {
+        "error_estimate": error_of(variation, tail), "conserved_variation": variation, "coefficient_tail": tail,
+    }  # fmt: skip
+    return Survey(problem, u, loads, numbers, reading.fields, residual, modes, verdicts)
+
+
+def errors(problem: Problem, u: np.ndarray, loads: np.ndarray) -> np.ndarray:
+    """Estimated relative error of force and length of states u (n, m) under loads (n, l)."""
+    reading = read_states(problem, u, loads, False)[0]
+    return error_of(reading.conserved_variation, reading.coefficient_tail)
+
+
+def error_of(conserved_variation: np.ndarray, coefficient_tail: np.ndarray) -> np.ndarray:
+    """The smaller of two bounds that hold on random muscles.
+
+    In validation/ the variation of the conserved quantity fell short of the true error by 2.5 at most. The tail of the
+    coefficients enters the energy squared; near an instability the force follows less well, hence the power 1.5.
+    """
+    return np.maximum(np.minimum(3.0 * conserved_variation, coefficient_tail**1.5), ROUNDING)

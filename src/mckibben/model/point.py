@@ -1,0 +1,28 @@
+"""The state at a material point, by name: what every pointwise function of the mechanics takes.
+
+A further field of the model (the roll of the fibres, their stretch) is one more name here. A rate that is integrated
+along the length takes a `Point` whose integrated part is None, since it must not depend on it.
+"""
+
+from typing import Any, NamedTuple
+
+from mckibben.model.parameters import Number
+
+__all__ = ["Point"]
+
+
+class Point(NamedTuple):
+    """State at one material point, or at many: each part is a number or an array of one shape.
+
+    Taking psi instead of the paper's theta' removes the square root of Eq. (12) and lets a bulge overhang its fitting.
+    An angle may be an `angle.Known`, whose sine and cosine are at hand.
+    """
+
+    theta: Any  #: braid angle [rad] from the parallels
+    psi: Any  #: slope angle of the meridian [rad]
+    kappa: Any  #: its derivative psi' = d psi/dv [rad/m]
+
+    @classmethod
+    def cylinder(cls, theta: Number) -> "Point":
+        """The uniform cylinder at a braid angle [rad]: no slope, no curvature of the meridian."""
+        return cls(theta, 0.0 * theta, 0.0 * theta)

@@ -1,0 +1,1 @@
+"""Values only: results, sensitivities, their variables and verdicts. Nothing here computes."""

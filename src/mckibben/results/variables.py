@@ -1,0 +1,79 @@
+"""The variables of a result, each declared once with its unit and meaning. Files, plots and the reference use them."""
+
+STEP: dict[str, tuple[str, str]] = {
+    "length": ("m", "distance between the fittings"),
+    "contraction": ("1", "contraction 1 - h/H0, positive when shorter"),
+    "force": ("N", "axial force, positive in tension"),
+    "pressure": ("Pa", "gauge pressure"),
+    "volume": ("m^3", "volume inside the braid"),
+    "energy_bending_1": ("J", "fibre energy, bending in the tangent plane"),
+    "energy_bending_2": ("J", "fibre energy, bending normal to the surface"),
+    "energy_twist": ("J", "fibre energy, twist"),
+    "energy_chamber": ("J", "energy of the chamber"),
+    "energy": ("J", "stored energy"),
+    "work": ("J", "work done on the muscle since the first state"),
+    "verdict": ("", "verdict"),
+    "reason": ("", "reason for the verdict"),
+    "shape": ("", "shape of the meridian"),
+    "converged": ("", "whether equilibrium was found"),
+    "iterations": ("1", "Newton systems solved"),
+    "residual": ("1", "imbalance over the size of its terms"),
+    "error_estimate": ("1", "estimated relative error of force and length"),
+    "coefficient_tail": ("1", "last coefficients over the largest"),
+    "conserved_variation": ("1", "relative variation of the conserved quantity along the length"),
+    "modes_length_control": ("1", "negative symmetric modes under length control"),
+    "modes_force_control": ("1", "negative symmetric modes under force control"),
+    "modes_antisymmetric": ("1", "negative antisymmetric modes (-1: not separated)"),
+    "protocol_step": ("1", "which step of the test a state belongs to"),
+}
+"""Variables with one value per state: unit and meaning."""
+
+FIELDS: dict[str, tuple[str, str]] = {
+    "theta": ("rad", "braid angle from the parallels"),
+    "psi": ("rad", "slope angle of the meridian"),
+    "r": ("m", "radius"),
+    "z": ("m", "axial position from the fixed fitting"),
+    "stretch_hoop": ("1", "hoop stretch of the chamber"),
+    "stretch_axial": ("1", "meridian stretch of the chamber"),
+    "stretch_thickness": ("1", "thickness stretch of the chamber"),
+    "u1": ("1/m", "fibre strain u1, geodesic curvature"),
+    "u2": ("1/m", "fibre strain u2, normal curvature"),
+    "u3": ("1/m", "fibre strain u3, twist"),
+    "density_bending_1": ("J/m", "fibre energy per unit v, bending in the tangent plane"),
+    "density_bending_2": ("J/m", "fibre energy per unit v, bending normal to the surface"),
+    "density_twist": ("J/m", "fibre energy per unit v, twist"),
+    "density_fibres": ("J/m", "fibre energy per unit v"),
+    "density_chamber": ("J/m", "energy of the chamber per unit v"),
+    "fibre_tension": ("N", "tension of one fibre"),
+    "share_mesh": ("1", "share of the axial load F + pi r^2 P carried by the mesh"),
+    "share_chamber": ("1", "share of the axial load F + pi r^2 P carried by the chamber"),
+}
+"""Variables along the material coordinate v: unit and meaning."""
+
+OBSERVED: dict[str, tuple[str, str]] = {
+    name: STEP[name]
+    for name in (
+        "length", "contraction", "force", "pressure", "volume", "energy_bending_1", "energy_bending_2", "energy_twist",
+        "energy_chamber", "energy",
+    )
+} | {
+    "peak_fibre_tension": ("N", "largest tension of a fibre along its length"),
+    "largest_radius": ("m", "largest radius along the length"),
+}  # fmt: skip
+"""Results of one state that have derivatives: unit and meaning."""
+
+VARIABLES = STEP | FIELDS
+COORDINATES = {"step": ("", "state"), "v": ("m", "axial material coordinate")}
+
+
+def dimensions(name: str) -> tuple[str, ...]:
+    """Dimensions of a variable or coordinate."""
+    if name in COORDINATES:
+        return (name,)
+    return ("step",) if name in STEP else ("step", "v")
+
+
+def about_variable(name: str) -> dict[str, str]:
+    """Attributes of a variable or coordinate in a Dataset or file."""
+    unit, meaning = (VARIABLES | COORDINATES)[name]
+    return {"long_name": meaning} | ({"units": unit} if unit else {})

@@ -1,0 +1,98 @@
+"""Where the direct search finds no stable state: what else is tried, in turn, and how far the way there is good."""
+
+from collections.abc import Iterator
+
+import attrs
+
+from mckibben.results.verdict import Verdict
+from mckibben.search.finer import error_of, sharpened
+from mckibben.search.sideways import tip, tip_on
+from mckibben.search.starts import starts
+from mckibben.search.walk import BranchEnd, Look, branch_end, look
+from mckibben.solver.bench import LADDER, Bench
+from mckibben.solver.equilibrium import Equilibrium
+from mckibben.solver.find import find
+from mckibben.solver.held import Held
+
+SEARCH = LADDER[1]
+"""Unknowns of the searches from other starts."""
+REFINED = tuple(zip(LADDER, (1e-5, 1e-8, 1e-8, 1e-8), strict=True))
+"""Unknowns of the walk along the way, and to what share of it its end is found."""
+
+
+@attrs.frozen
+class Way:
+    """Pressure first, then from the initial length, or from no force, to the target: its start and its end."""
+
+    first: Held
+    end: BranchEnd
+
+
+@attrs.frozen
+class Else:
+    """What was found instead, and how many starts were tried."""
+
+    symmetric: Look | None  #: a symmetric state of admissible shape, stable or unstable to one side only
+    asymmetric: Look | None  #: a good state of another shape
+    tipped: Look | None  #: where the unstable symmetric state went, good or not
+    tried: int
+
+
+def way_there(bench: Bench, held: Held, b: float, tolerance: float) -> Way | None:
+    """The way to a target, as far as its states are good.
+
+    On more unknowns until the last good state is good to the tolerance. None where the pressure is not held.
+    """
+    axial = next((name for name in ("length", "force") if name in held.names), None)
+    if axial is None or "pressure" not in held.names:
+        return None
+    first = Held.of(**{axial: float(bench.p.H0) if axial == "length" else 0.0, "pressure": held.get("pressure")})
+    end: BranchEnd | None = None
+    for size, share in REFINED:
+        end = branch_end(bench.problem(size, b), first, held, share, coarse=end)
+        if size >= SEARCH and (end.last is None or error_of(end.last.state) <= tolerance):
+            break
+    assert end is not None
+    return Way(first, end)
+
+
+def look_elsewhere(bench: Bench, held: Held, found: Look, way: Way | None, tolerance: float) -> Else:
+    """Tip what tips, follow the asymmetric branch, and search from other starts until something stable is found."""
+    unstable = found if found.verdict.verdict == Verdict.UNSTABLE else None
+    end = None if way is None else way.end
+    tipped = tip(bench, found, held, tolerance)
+    if unstable is None and (tipped is None or not tipped.good) and end is not None:
+        tipped = tip_on(bench, end, held, tolerance)
+    good = tipped if tipped is not None and tipped.good else None
+    if way is None or good is not None:  # where a muscle goes from rest comes before what other starts find
+        return Else(unstable, good, tipped, 0)
+    count = 0
+    for state in _searched(bench, held, found.state.problem.b, end):
+        count += 1
+        seen = look(state, held)
+        if seen.good:
+            seen = sharpened(bench, state, held, tolerance)
+            if seen.good:
+                return Else(seen, None, tipped, count)
+        elif unstable is None and _tips(seen, held):
+            seen = sharpened(bench, state, held, tolerance)
+            tipped = tip(bench, seen, held, tolerance)
+            if not _tips(seen, held) or tipped is None:
+                continue
+            unstable, good = seen, tipped if tipped.good else None
+            if good is not None:
+                break
+    return Else(unstable, good, tipped, count)
+
+
+def _searched(bench: Bench, held: Held, b: float, end: BranchEnd | None) -> Iterator[Equilibrium]:
+    problem = bench.problem(SEARCH, b)
+    for start in starts(problem, held, end):
+        yield find(problem, held, start)
+
+
+def _tips(seen: Look, held: Held) -> bool:
+    """Whether a state of admissible shape is unstable in antisymmetric modes alone."""
+    if seen.modes is None or seen.verdict.verdict != Verdict.UNSTABLE:
+        return False
+    return not (seen.modes.length_control if "length" in held.names else seen.modes.force_control)

@@ -1,0 +1,69 @@
+"""A muscle on the bench: its numbers, what limits its length, and the discretisations to put it on."""
+
+from typing import Any
+
+import attrs
+import numpy as np
+
+from mckibben.discretise.bspline import Spline
+from mckibben.discretise.placement import crowding
+from mckibben.discretise.spectral import Line
+from mckibben.model.extension import full_extension
+from mckibben.model.parameters import Parameters, parameters
+from mckibben.solver.held import Held
+from mckibben.solver.problem import Basis, Problem
+from mckibben.spec import Muscle, SpecError
+
+__all__ = ["LADDER", "SIZES", "Bench", "sizes_for"]
+
+LADDER = (24, 48, 96, 192)
+"""Half-length unknowns, tried in turn until the error estimate is below the tolerance; few states need the last."""
+SIZES = {"spectral": LADDER[:3], "paper": (43,)}
+"""Sizes of the two discretisations for a whole test."""
+QUICK = 12
+"""Half-length unknowns to start with where 1e-4 will do."""
+NEARLY = 0.999
+"""Share of full extension for which points are placed where a target is at or beyond it."""
+
+
+@attrs.frozen
+class Bench:
+    """A muscle on the bench."""
+
+    p: Parameters
+    ends: str
+    longest: float  #: full extension [m]
+
+    @classmethod
+    def of(cls, muscle: Muscle) -> "Bench":
+        """From the specification."""
+        p, ends = parameters(muscle), str(muscle.ends)
+        return cls(p, ends, full_extension(float(p.R0), float(p.H0), float(p.theta0), ends))
+
+    def problem(self, size: int, b: float, discretisation: str = "spectral", modes: Any = "odd") -> Problem:
+        """The muscle on a discretisation."""
+        return Problem.of(self.basis(size, discretisation, modes), self.p, b)
+
+    def basis(self, size: int, discretisation: str = "spectral", modes: Any = "odd") -> Basis:
+        """The discretisation."""
+        return Spline(size, self.ends) if discretisation == "paper" else Line(size, self.ends, modes)
+
+    def placement(self, held: Held) -> float:
+        """Crowding of points for one state."""
+        force, pressure = held.get("force", np.nan), held.get("pressure", 0.0)
+        length = min(held.get("length", float(self.p.H0) if np.isnan(force) else np.nan), NEARLY * self.longest)
+        return crowding(self.p, np.array([length]), np.array([force]), np.array([pressure]))
+
+    def too_long(self) -> str:
+        """Why no equilibrium exists beyond full extension."""
+        return f"no equilibrium: the fibres are straight at {1e3 * self.longest:.4f} mm, the longest possible length"
+
+
+def sizes_for(discretisation: str, tolerance: float) -> tuple[int, ...]:
+    """Sizes to try in turn."""
+    if discretisation not in SIZES:
+        raise SpecError("discretisation", discretisation, "must be one of " + ", ".join(SIZES))
+    if not 1e-10 <= tolerance <= 1e-2:
+        raise SpecError("tolerance", tolerance, "must be from 1e-10 to 1e-2", "1e-6 is the default")
+    sizes = SIZES[discretisation]
+    return (QUICK, *sizes) if discretisation == "spectral" and tolerance >= 1e-4 else sizes

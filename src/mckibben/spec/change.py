@@ -1,0 +1,91 @@
+"""Fields of a spec object given anew, one or several at once: by `Muscle.replace`, by a sweep, over a preset.
+
+A field goes by its dotted name: "braid.angle", "chamber.law.c1", "steps.0.pressure".
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping
+from typing import Any
+
+from mckibben.spec.declared import describe, evolved, walk
+from mckibben.spec.errors import SpecError, nearest
+
+__all__ = ["CHANGED", "changed", "changed_muscle", "changed_name", "left_behind", "still_assumed"]
+
+CHANGED = " (changed)"
+"""Added to the name of a muscle that is no longer what its name says."""
+
+_FIBRE = "braid.fibre."
+_STIFFNESSES, _MATERIAL = ("B1", "B2", "B3"), ("E", "nu")
+
+
+def changed_muscle(muscle: Any, values: Mapping[str, Any]) -> Any:
+    """The muscle with all of `values` put in at once.
+
+    What was changed, and all within it, leaves `assumed`; the name says that the muscle was changed. Giving B1, B2, B3
+    replaces a fibre's E and nu, and the other way round. SpecError for an unknown name, or values that cannot be.
+    """
+    given = dict(values)
+    if "assumed" not in values:
+        given["assumed"] = still_assumed(muscle.assumed, values)
+    if muscle.name and not {"name", "assumed"} & values.keys():
+        given["name"] = changed_name(muscle.name)
+    return changed(muscle, given)
+
+
+def changed(owner: Any, values: Mapping[str, Any], prefix: str = "") -> Any:
+    """A copy of a spec object, or a tuple of them, with `values` put in at once, inner ones first."""
+    new, inner = _grouped(values)
+    if isinstance(owner, tuple):
+        return tuple(changed(part, inner.get(str(k), {}), f"{prefix}{k}.") for k, part in enumerate(owner))
+    known = {item.name: item.kind for item in describe(type(owner)) if item.stored}
+    for head in (*new, *inner):
+        if head not in known or (head in inner and known[head] not in ("part", "steps")):
+            full = prefix + next(name for name in values if name.partition(".")[0] == head)
+            options = dict.fromkeys(prefix + name for name in (*known, *(name for name, _, _ in walk(owner))))
+            raise SpecError(full, allowed="is no field of this muscle", advice=nearest(full, options))
+    for head, some in inner.items():
+        part = new.get(head, getattr(owner, head))
+        if part is None:
+            (name, value), *_ = some.items()
+            raise SpecError(
+                f"{prefix}{head}.{name}", value, f"this muscle has no {head}", f"give the whole {head} first"
+            )
+        new[head] = changed(part, some, f"{prefix}{head}.")
+    return evolved(owner, **dict.fromkeys(left_behind(new, prefix)), **new)
+
+
+def _grouped(values: Mapping[str, Any]) -> tuple[dict[str, Any], dict[str, dict[str, Any]]]:
+    """What is given for an object's own fields, and what for fields within each of them."""
+    own: dict[str, Any] = {}
+    inner: dict[str, dict[str, Any]] = {}
+    for name, value in values.items():
+        head, dot, rest = name.partition(".")
+        if dot:
+            inner.setdefault(head, {})[rest] = value
+        else:
+            own[head] = value
+    return own, inner
+
+
+def left_behind(given: Iterable[Any], prefix: str) -> tuple[str, ...]:
+    """Fields of a fibre that have no meaning beside those given: E and nu beside stiffnesses, and the other way."""
+    names = set(given) if prefix == _FIBRE else set()
+    stiffnesses, material = names & set(_STIFFNESSES), names & set(_MATERIAL)
+    if bool(stiffnesses) == bool(material):  # nothing, or both, which the fibre refuses
+        return ()
+    return _MATERIAL if stiffnesses else _STIFFNESSES
+
+
+def still_assumed(assumed: Iterable[str], given: Iterable[str]) -> tuple[str, ...]:
+    """Names of assumed fields that are neither given, nor within what is given, nor left behind by it."""
+    said = list(given)
+    inside = [name.removeprefix(_FIBRE) for name in said if name.startswith(_FIBRE)]
+    said += [_FIBRE + name for name in left_behind(inside, _FIBRE)]
+    return tuple(name for name in assumed if not any(name == field or name.startswith(field + ".") for field in said))
+
+
+def changed_name(name: str) -> str:
+    """Name of a muscle that is no longer what its name says."""
+    return name if name.endswith(CHANGED) else name + CHANGED

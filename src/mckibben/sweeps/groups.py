@@ -1,0 +1,173 @@
+"""From the designs of a chunk to groups that a batch can take: their numbers as arrays, without an object for each.
+
+Designs that differ in numbers alone make a group. Its choices go through the specification once, by the first of them;
+the numbers of all are then put into its leaves at once. What involves several fields is checked for all at once, too: a
+design that is not certainly valid is left to the specification, which says what is wrong with it.
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+import attrs
+import jax
+import numpy as np
+
+from mckibben.model.parameters import Parameters, numbers
+from mckibben.spec import Along, BlockedForce, CustomLaw, Ends, Muscle, Path, SpecError, Step, Test
+from mckibben.spec import numbers as leaves_of
+from mckibben.spec.vary import changed
+from mckibben.sweeps.plan import Piece
+
+__all__ = ["Group", "group_of", "groups"]
+
+NEAR_EXTENSION = 0.98
+"""Share of a length surely below full extension from which on a design is solved singly."""
+FITS = 1.0 - 1e-9
+"""Share of the room at which fibres certainly fit side by side."""
+
+
+@attrs.frozen
+class Group:
+    """Designs that a batch can take together: they differ in numbers alone."""
+
+    index: np.ndarray  #: (designs) which designs of the chunk they are
+    p: Parameters  #: each number an array (designs)
+    ends: str
+    held: tuple[str, str]
+    wanted: np.ndarray  #: (designs, n, 2) in SI units
+    corners: np.ndarray  #: (designs, c, 3) length, force, pressure, for the placement of points
+
+    def __len__(self) -> int:
+        return len(self.index)
+
+    def take(self, some: np.ndarray) -> Group:
+        """Some of the designs."""
+        p = jax.tree.map(lambda values: values[some], self.p)
+        return attrs.evolve(self, index=self.index[some], p=p, wanted=self.wanted[some], corners=self.corners[some])
+
+
+def groups(piece: Piece) -> list[Group]:
+    """The designs of a chunk that batches can take; what is in none of them is for the single solver."""
+    split = [tuple(_parts(value) for value in row) for row in piece.rows]
+    kinds: dict[Any, list[int]] = {}
+    for k, row in enumerate(split):
+        kinds.setdefault(tuple(kind for kind, _ in row), []).append(k)
+    found = []
+    for members in kinds.values():
+        try:
+            base = changed(piece.muscle, piece.test, dict(zip(piece.fields, piece.rows[members[0]], strict=True)))
+            values = {
+                name: np.array([split[k][column][1] for k in members], float)
+                for column, name in enumerate(piece.fields)
+                if split[members[0]][column][1]
+            }
+            made = _group(*base, values, np.array(members))
+        except (SpecError, ValueError, ArithmeticError):  # the first may be wrong where others are not
+            continue
+        if made is not None:
+            found.append(made)
+    return found
+
+
+def group_of(muscle: Muscle, test: Test) -> Group | None:
+    """One design alone; None where only the single solver will do."""
+    try:
+        return _group(muscle, test, {}, np.zeros(1, int))
+    except (SpecError, ValueError, ArithmeticError):
+        return None
+
+
+def _parts(value: Any) -> tuple[Any, tuple[float, ...]]:
+    """What a value is beside its numbers, and its numbers."""
+    if isinstance(value, Path):
+        return (Path, value.mode, value.unit, len(value.waypoints)), tuple(value.waypoints)
+    if type(value) in (int, float):
+        return float, (value,)
+    try:
+        hash(value)
+    except TypeError:
+        return id(value), ()
+    return value, ()
+
+
+def _group(muscle: Muscle, test: Test, values: dict[str, np.ndarray], index: np.ndarray) -> Group | None:
+    """Designs like one, with some numbers (designs, how many) anew; those that are not certainly valid are left out."""
+    if isinstance(test, BlockedForce) and test.length is None and "braid.length" in values:
+        return None  # the length held is the braid's own
+    steps = test.as_steps(muscle)
+    step, held = steps[0], tuple(str(name) for name in steps[0].controls)
+    if len(steps) > 1 or step.gas is not None or step.along != Along.VALUES or held[1:] != ("pressure",):
+        return None
+    if muscle.ends == Ends.FREE and held[0] == "force":  # nearly singular: Newton without a search does not settle
+        return None
+    several = _with(muscle, values)
+    if several is None:
+        return None
+    count = len(index)
+    valid = np.broadcast_to(_valid(several), (count,))
+    p: Parameters = jax.tree.map(lambda x: np.array(np.broadcast_to(np.asarray(x, float), (count,))), numbers(several))
+    knots = {name: _knots(step, name, values, p, count) for name in held}
+    wanted = np.stack([getattr(step, name).weights(step.points) @ knots[name] for name in held], axis=-1)
+    wanted = np.moveaxis(wanted, 1, 0)
+    if held[0] == "length":
+        valid = valid & (wanted[:, :, 0].max(axis=1) <= NEAR_EXTENSION * _surely_reached(p, str(muscle.ends)))
+    made = Group(index, p, str(muscle.ends), (held[0], held[1]), wanted, _corners(step, held, knots, p, count))
+    return made.take(np.flatnonzero(valid)) if valid.any() else None
+
+
+def _with(muscle: Muscle, values: dict[str, np.ndarray]) -> Muscle | None:
+    """The muscle with arrays for some of its numbers; None for a field that is no single number of it."""
+    names = [name for name, _, _ in leaves_of(muscle)]
+    leaves, tree = jax.tree.flatten(muscle)
+    for name, numbers_of in values.items():
+        if name.startswith("test."):
+            continue
+        if name not in names:
+            return None
+        leaves[names.index(name)] = numbers_of[:, 0]
+    made: Muscle = jax.tree.unflatten(tree, leaves)
+    return made
+
+
+def _valid(muscle: Muscle) -> Any:
+    """Whether what involves several numbers certainly goes together, as the specification would find."""
+    braid, diameter = muscle.braid, muscle.braid.fibre.diameter
+    good: Any = np.asarray(braid.fibres) % 2 == 0
+    if diameter is not None:
+        room = 2.0 * np.pi * braid.radius * np.sin(braid.angle)
+        good = good & (0.5 * np.asarray(braid.fibres) * diameter <= FITS * room)
+    if muscle.chamber is not None and not isinstance(muscle.chamber.law, CustomLaw):
+        good = good & (np.asarray(muscle.chamber.law.shear_modulus) > 0.0)
+    return good
+
+
+def _knots(step: Step, name: str, values: dict[str, np.ndarray], p: Parameters, count: int) -> np.ndarray:
+    """Numbers (k, designs) between which a controlled quantity goes, from that at rest on where it is needed."""
+    path = getattr(step, name)
+    given = values.get(f"test.{name}", np.tile(np.array(path.waypoints, float), (count, 1))).T
+    if not path.needs_present:
+        return given
+    rest = p.H0 if name == "length" else np.zeros(count)
+    return np.concatenate([rest[None], given])
+
+
+def _corners(step: Step, held: tuple[str, ...], knots: dict[str, np.ndarray], p: Parameters, count: int) -> np.ndarray:
+    """(length, force, pressure) at the ends of what is held, as for a single run; NaN for what is not."""
+    known = {name: knots[name][int(getattr(step, name).needs_present) :] for name in held}
+    none = np.full((1, count), np.nan)
+    lengths, forces, pressures = (known.get(name, none) for name in ("length", "force", "pressure"))
+    lengths = lengths if len(lengths) else none
+    forces = forces if len(forces) else none
+    pressures = pressures if len(pressures) else np.zeros((1, count))
+    if np.isnan(lengths).all() and np.isnan(forces).all():
+        lengths = p.H0[None]
+    return np.array([[h, F, P] for h in lengths for F in forces for P in pressures]).transpose(2, 0, 1)
+
+
+def _surely_reached(p: Parameters, ends: str) -> np.ndarray:
+    """A length [m] below full extension (theory page): that of a long muscle less what its two ends take."""
+    fibre = p.H0 / np.sin(p.theta0)
+    if ends == Ends.FREE:
+        return np.asarray(fibre)
+    return np.maximum(fibre - 2.0 * p.R0 / np.cos(p.theta0) * (1.0 - np.sin(p.theta0)), p.H0)
