@@ -42,6 +42,6 @@ def crowdings(p: Parameters, length: Array, force: Array, pressure: Array) -> Fl
 
 def crowding(p: Parameters, length: np.ndarray, force: np.ndarray, pressure: np.ndarray) -> float:
     """Crowding b of points that serves all the given states (NaN where length or force is not held)."""
-    size = max(32, 1 << int(len(length) - 1).bit_length())
+    size = max(4, 1 << int(len(length) - 1).bit_length())
     padded = (np.concatenate([a, np.repeat(a[-1:], size - len(a))]) for a in (length, force, pressure))
     return float(np.max(np.asarray(crowdings(p, *padded))))

@@ -10,13 +10,13 @@ from typing import Any, NamedTuple
 import jax
 import jax.numpy as jnp
 import numpy as np
-from jaxtyping import Bool, Float
+from jaxtyping import Bool, Float, Int
 
 from mckibben.compiled.arrays import Array
 from mckibben.compiled.kernel import kernel
 from mckibben.discretise.fields import Placed, place, points_at, variables
 from mckibben.discretise.fields import known as with_sines
-from mckibben.model.angle import radians, slope
+from mckibben.model.angle import cos, radians, slope
 from mckibben.model.chamber import chamber_density, chamber_pull
 from mckibben.model.energy import lagrangian
 from mckibben.model.fibres import fibre_densities
@@ -60,17 +60,15 @@ def read(basis: Basis, on: Placed, state: State) -> Reading:
     inner = _points(basis, on, state.u)
     outer = points_at(basis, on, state.u, sampling)
 
-    def local(at: Point) -> tuple[Array, Array, Array]:
+    def local(at: Point) -> tuple[Array, tuple[Array, ...], Array, Array]:
         pull = slope(lambda theta: lagrangian(at._replace(theta=theta), p, F, P), at.theta)
-        parts = (*fibre_densities(at, p), chamber_density(at, p))
-        return pull, jnp.stack([*parts, height_rate(at, p), volume_rate(at, p)]), height_rate(at, p)
+        return pull, (*fibre_densities(at, p), chamber_density(at, p)), height_rate(at, p), volume_rate(at, p)
 
-    pull, densities, rate = jax.vmap(local)(inner)
+    pull, densities, rate, swept = jax.vmap(local)(inner)
     weights = jnp.asarray(operators.weights) * on.jacobian
-    totals = weights @ densities
+    parts = [jnp.sum(weights * density) for density in densities]
+    length, volume = jnp.sum(weights * rate), jnp.sum(weights * swept)
     inner_costate, costate = _costates(basis, on, pull, M, sampling)
-    parts = totals[: len(ENERGIES)]
-    length = totals[len(ENERGIES)]
     found = jax.vmap(lambda at, c: _fields(at, c, F, P, p))(outer, costate)
     found["z"] = sampling.integral @ (on.jacobian * rate)
     ends = np.array([0] if basis.half else [0, -1])
@@ -78,8 +76,8 @@ def read(basis: Basis, on: Placed, state: State) -> Reading:
     variation = _variation(on, checked, jnp.concatenate([inner_costate, costate[ends]]), F, P, weights)
     tallest = jax.vmap(lambda field: peak(field, basis.half))(jnp.stack([found["fibre_tension"], found["r"]]))
     numbers = {
-        "length": length, "contraction": 1.0 - length / p.H0, "force": F, "pressure": P, "volume": totals[-1],
-        **{f"energy_{name}": part for name, part in zip(ENERGIES, parts, strict=True)}, "energy": parts.sum(),
+        "length": length, "contraction": 1.0 - length / p.H0, "force": F, "pressure": P, "volume": volume,
+        **{f"energy_{name}": part for name, part in zip(ENERGIES, parts, strict=True)}, "energy": sum(parts),
         "peak_fibre_tension": tallest[0], "largest_radius": tallest[1],
     }  # fmt: skip
     return Reading(numbers, found, jnp.abs(found["psi"]).max(), variation, basis.tail(state.u))
@@ -107,7 +105,7 @@ def _fields(at: Point, costate: Number, F: Number, P: Number, p: Parameters) -> 
     bending1, bending2, twist = fibre_densities(at, p)
     hoop, axial, thickness = stretches(at, p)
     u1, u2, u3 = fibre_strains(at, p)
-    chamber_axial = chamber_pull(at, p) * jnp.cos(radians(at.psi))
+    chamber_axial = chamber_pull(at, p) * cos(at.psi)
     total_axial = F + jnp.pi * radius(at, p) ** 2 * P
     return {
         "theta": radians(at.theta), "psi": radians(at.psi), "r": radius(at, p),
@@ -186,18 +184,35 @@ def peak(field: Float[Array, " n"], mirrored: bool = False) -> Float[Array, ""]:
     return jnp.polyval(series, newton(at))  # the last step carries the derivative of the place
 
 
+AT_ONCE = 8
+"""States that are read in step."""
+
+
 @kernel
 def read_many(
-    basis: Basis, p: Parameters, b: Number, states: State, volume: Bool[Array, ""]
+    basis: Basis, p: Parameters, b: Number, states: State, volume: Bool[Array, ""], count: Int[Array, ""]
 ) -> tuple[Reading, Stable, Array]:
-    """Readings, stability and residuals of n states."""
-    on = place(basis, p, b)
-    at_once = min(len(states.u), batch_size(basis.unknowns))
+    """Readings, stability and residuals of the first `count` of n states; beyond, what happens to be there.
 
-    def judged(state: State) -> tuple[Stable, Array]:
+    n is 1 or a multiple of `AT_ONCE`.
+    """
+    on, n = place(basis, p, b), len(states.u)
+    size = min(n, AT_ONCE, batch_size(basis.unknowns))
+
+    def one(state: State) -> tuple[Reading, Stable, Array]:
         local = localise(basis, on, state)
         s = assemble(basis, on, local, len(state.loads))
-        return stable(basis, on, local, s, volume), residual(s, state.loads)
+        return read(basis, on, state), stable(basis, on, local, s, volume), residual(s, state.loads)
 
-    under, left = jax.lax.map(judged, states, batch_size=at_once)
-    return jax.vmap(lambda state: read(basis, on, state))(states), under, left
+    def some(k: Any) -> Any:
+        return jax.vmap(one)(jax.tree.map(lambda rows: jax.lax.dynamic_slice_in_dim(rows, k * size, size), states))
+
+    blank = jax.tree.map(lambda s: jnp.zeros((n, *s.shape[1:]), s.dtype), jax.eval_shape(some, 0))
+
+    def put(k: Any, rows: Any) -> Any:
+        return jax.tree.map(
+            lambda row, new: jax.lax.dynamic_update_slice_in_dim(row, new, k * size, 0), rows, some(k)
+        )  # fmt: skip
+
+    found: tuple[Reading, Stable, Array] = jax.lax.fori_loop(0, (count + size - 1) // size, put, blank)
+    return found

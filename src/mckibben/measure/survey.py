@@ -71,7 +71,7 @@ def _mirrored(name: str, half: np.ndarray) -> np.ndarray:
 def prepare(basis: Basis, p: Parameters, b: float, count: int) -> None:
     """Have what a survey of `count` states calls compiled in the background (see `compiled.kernel`)."""
     states = State(np.empty((count, basis.unknowns)), np.empty((count, 3 if basis.closes else 2)))
-    read_many.prepare(basis, p, b, padded_states(states), np.array(False))
+    read_many.prepare(basis, p, b, padded_states(states), np.array(False), np.array(count))
 
 
 def padded_states(states: State) -> State:
@@ -83,7 +83,7 @@ def read_states(problem: Problem, u: np.ndarray, loads: np.ndarray, volume: bool
     """Readings of states u (n, m) under loads (n, l), as NumPy arrays."""
     n = len(u)
     states = padded_states(State(u, loads))
-    reading, stable, left = read_many(problem.basis, problem.p, problem.b, states, np.array(volume))
+    reading, stable, left = read_many(problem.basis, problem.p, problem.b, states, np.array(volume), np.array(n))
     cut = Reading(
         {name: np.asarray(values)[:n] for name, values in reading.numbers.items()},
         {name: np.asarray(values)[:n] for name, values in reading.fields.items()},

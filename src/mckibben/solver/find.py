@@ -11,7 +11,7 @@ from mckibben.solver.held import ROWS, Held, targets_of
 from mckibben.solver.problem import CLOSURE, LENGTH, VOLUME, Problem
 from mckibben.solver.trust_region import Solved, Task, imbalance, minimise
 
-__all__ = ["at_rest", "embedded", "equilibrium", "find", "refine"]
+__all__ = ["along", "at_rest", "embedded", "equilibrium", "find", "refine"]
 
 LEGS = 31
 """States on the way to what is held, where that is no minimum: with the first one a length that is compiled anyway."""
@@ -27,7 +27,7 @@ def find(
     is reached along the straight way there from the start.
     """
     if not held.is_minimum:
-        return _along(problem, held, start)
+        return along(problem, held, start)
     u = np.zeros(problem.basis.unknowns) if start is None else start.u
     loads = np.zeros(problem.loads) if start is None else start.loads
     return _minimum(problem, held, u, loads, radius, leash)
@@ -77,10 +77,15 @@ def _solved(problem: Problem, solved: Solved) -> Equilibrium:
 
 def equilibrium(problem: Problem, u: np.ndarray, loads: np.ndarray, iterations: int = 0) -> Equilibrium:
     """A state from its unknowns and loads, with the residual that it really has."""
+    return _looked_at(problem, u, loads, iterations)[0]
+
+
+def _looked_at(problem: Problem, u: np.ndarray, loads: np.ndarray, iterations: int) -> tuple[Equilibrium, Any]:
+    """A state, and its braid angles."""
     a = problem.evaluate(u)
     signs = np.concatenate([[1.0], -loads, np.zeros(3 - len(loads))])
     residual = imbalance(signs, a.gradients)
-    return Equilibrium(problem, u, loads, a.totals, residual < 1e-8, residual, iterations)
+    return Equilibrium(problem, u, loads, a.totals, residual < 1e-8, residual, iterations), a.theta
 
 
 def at_rest(problem: Problem) -> Equilibrium:
@@ -89,16 +94,18 @@ def at_rest(problem: Problem) -> Equilibrium:
     return Equilibrium(problem, *nothing, np.array([0.0, 1.0, 1.0, 0.0]), True, 0.0, 0)
 
 
-def _along(problem: Problem, held: Held, start: Equilibrium | None) -> Equilibrium:
-    """From what is held at the start, on the straight way, to the target."""
+def along(
+    problem: Problem, held: Held, start: Equilibrium | None = None, legs: int = LEGS, tolerance: float = 1e-7
+) -> Equilibrium:
+    """From what is held at the start, or at rest, on the straight way, to the target; quick where nothing is in it."""
     here = at_rest(problem) if start is None else start
     first = attrs.evolve(held, values=readings(here, held.names))
-    path = [first.towards(held, k / LEGS) for k in range(LEGS + 1)]
-    states = follow_to(problem, path, here, 1e-7)
+    path = [first.towards(held, k / legs) for k in range(legs + 1)]
+    states = follow_to(problem, path, here, tolerance)
     if len(states) == len(path):
         last = states[-1]
-        found = equilibrium(problem, last.u, last.loads, sum(one.iterations for one in states[1:]))
-        if found.converged and inside(problem.evaluate(found.u).theta):
+        found, theta = _looked_at(problem, last.u, last.loads, sum(one.iterations for one in states[1:]))
+        if found.converged and inside(theta):
             return found
     names = " and ".join(str(name) for name in held.names)
     advice = f"no state with this {names} was found on the straight way from the start"

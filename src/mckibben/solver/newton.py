@@ -31,6 +31,8 @@ HEAVY = 1e3
 WORK = 200_000
 """Operations: jaxlib hands a batch of factorisations of as many or more to the threads on which the program itself
 runs, which then wait for each other: it was seen to stop for ever."""
+FEW = 4
+"""Terms of a matrix product up to which each is written out."""
 MOST = 64
 """Muscles in step on a processor: more do not fit in its cache."""
 MANY = 1024
@@ -52,13 +54,20 @@ class Correction(NamedTuple):
     stable: Bool[Array, ""]
 
 
+def product(a: Float[Array, "r k"], b: Float[Array, "k c"]) -> Float[Array, "r c"]:
+    """Matrix product of few rows or terms as sums, which a compiler joins with what is around them."""
+    if len(b) <= FEW:
+        return sum(a[:, k, None] * b[None, k] for k in range(len(b)))
+    return jnp.sum(a[:, :, None] * b[None, :, :], axis=1)
+
+
 def holding(s: System, c: Conditions) -> tuple[Float[Array, "r m"], Float[Array, " r"]]:
     """Gradients of the rows through the totals, and how stiffly each of them holds.
 
     A row that holds a total holds it as stiffly as can be told, one that gives a load not at all; in between, as with
     gas or a spring, the load answers to a change of its total: by 1/(dg/dT dg/dL) for the row g(T, L).
     """
-    A = c.by_totals @ s.gradients
+    A = product(c.by_totals, s.gradients)
     heavy = HEAVY * jnp.trace(jnp.abs(s.stiffness)) / jnp.maximum(jnp.sum(A**2), 1e-30)
     return A, 1.0 / (jnp.sum(c.by_totals * c.by_loads, axis=1) + 1.0 / heavy)
 
@@ -69,16 +78,16 @@ def correct(s: System, c: Conditions) -> Correction:
     K plus the rows' squares, weighted by how they hold, is positive definite where the state is stable under them.
     """
     A, weight = holding(s, c)
-    factor = jnp.linalg.cholesky(s.stiffness + (A.T * weight) @ A)
+    factor = jnp.linalg.cholesky(s.stiffness + product(A.T * weight, A))
     stable = jnp.isfinite(factor).all()
     solved = jax.scipy.linalg.cho_solve((factor, True), jnp.concatenate([s.rest[:, None], s.gradients.T], axis=1))
     y, Y = solved[:, 0], solved[:, 1:]
-    Z = (Y @ c.by_totals.T) * weight
-    on_loads = Y - Z @ c.by_loads  # du = on_loads dl - y - Z g, with g = miss, or its change by a target
+    Z = product(Y, c.by_totals.T) * weight
+    on_loads = Y - product(Z, c.by_loads)  # du = on_loads dl - y - Z g, with g = miss, or its change by a target
     sides = jnp.concatenate([c.miss[:, None], jnp.diag(c.by_target)], axis=1)
-    lead = jnp.concatenate([y[:, None], jnp.zeros((len(y), len(c.miss)))], axis=1) + Z @ sides
-    dl = small_solve(A @ on_loads + c.by_loads, A @ lead - sides)
-    du = on_loads @ dl - lead
+    lead = jnp.concatenate([y[:, None], jnp.zeros((len(y), len(c.miss)))], axis=1) + product(Z, sides)
+    dl = small_solve(product(A, on_loads) + c.by_loads, product(A, lead) - sides)
+    du = product(on_loads, dl) - lead
     return Correction(State(du[:, 0], dl[:, 0]), State(du[:, 1:], dl[:, 1:]), stable)
 
 
@@ -98,4 +107,4 @@ def small_solve(matrix: Float[Array, "l l"], sides: Float[Array, "l k"]) -> Floa
 def positive(K: Float[Array, "m m"], held: Float[Array, "c m"]) -> Bool[Array, ""]:
     """Whether K is positive definite on what the rows `held` leave free."""
     size = jnp.trace(jnp.abs(K)) / jnp.maximum(jnp.sum(held**2), 1e-30)
-    return jnp.isfinite(jnp.linalg.cholesky(K + size * held.T @ held)).all()
+    return jnp.isfinite(jnp.linalg.cholesky(K + size * product(held.T, held))).all()

@@ -9,7 +9,7 @@ import attrs
 import numpy as np
 
 from mckibben.solver.equilibrium import Equilibrium
-from mckibben.solver.find import equilibrium, find
+from mckibben.solver.find import along, equilibrium, find
 from mckibben.solver.follow import follow_to
 from mckibben.solver.held import Held
 from mckibben.solver.problem import Problem
@@ -21,6 +21,11 @@ INTERRUPTED = "interrupted"
 
 JUMP = 0.6
 """Largest change of psi [rad] from state to state that is trusted to stay on the branch."""
+
+FEW_LEGS = 4
+"""States on the quick way from rest to the first one."""
+NEAR = 1e-5
+"""Last Newton step there, at most."""
 
 Watch = Callable[[int, int], None]
 """Told (states done, states in all) as a path advances."""
@@ -84,9 +89,7 @@ def trace(
     n = len(path)
 
     def advance(rows: Rows) -> str:
-        here = find(problem, path[0], start)
-        if not here.converged and start is not None:
-            here = find(problem, path[0])
+        here = _first(problem, path[0], start)
         while here.converged:
             rows.add(here.u, here.loads, here.iterations)
             watch(rows.reached, n)
@@ -102,6 +105,12 @@ def trace(
         return here.message
 
     return Rows.of(problem, n).traced(advance)
+
+
+def _first(problem: Problem, held: Held, start: Equilibrium | None) -> Equilibrium:
+    """The first state: on the quick way where nothing is in it, else by the robust search."""
+    near = along(problem, held, legs=FEW_LEGS, tolerance=NEAR) if start is None else find(problem, held, start)
+    return near if near.converged else find(problem, held)
 
 
 def _search(problem: Problem, here: Held, there: Held, state: Equilibrium, depth: int = 6) -> Equilibrium:

@@ -39,8 +39,8 @@ class Local(NamedTuple):
     value: Float[Array, " q"]  #: of L
     first: tuple[Array, ...]  #: of L by each local variable: (q) each
     second: tuple[tuple[Array, ...], ...]  #: of L by pairs of them, the upper triangle
-    works: Float[Array, "3 q"]  #: densities of length, volume and closure
-    works_first: tuple[Array, ...]  #: their derivatives by each local variable: (3, q) each
+    works: tuple[Array, ...]  #: densities of length, volume and closure: (q) each
+    works_first: tuple[tuple[Array, ...], ...]  #: for each local variable, their derivatives by it
     turns: tuple[Array, ...]  #: J d(rate)/dy of the fields on which the rate depends
     bends: tuple[tuple[Array, ...], ...]  #: J d2(rate)/dy2, the upper triangle
 
@@ -81,13 +81,15 @@ def localise(basis: Any, on: Placed, state: State, share: Number = 1.0) -> Local
         second = [change(*(jnp.full_like(value, i == k) for k, value in enumerate(values)))[1] for i in range(count)]
         return value, tuple(first), tuple(tuple(row[i:]) for i, row in enumerate(second))
 
-    def working(near: Variables) -> tuple[Array, tuple[Array, ...]]:
+    def working(near: Variables) -> tuple[tuple[Array, ...], tuple[tuple[Array, ...], ...]]:
         """What loads do work on, and its derivatives by each local variable."""
 
-        def densities(*values: Number) -> Array:
-            return jnp.stack(works(form.point(at(values, near), p), p)) / unit[1:]
+        def densities(*values: Number) -> tuple[Number, ...]:
+            return tuple(
+                work / size for work, size in zip(works(form.point(at(values, near), p), p), sizes, strict=True)
+            )
 
-        values = plain(near)
+        values, sizes = plain(near), tuple(unit[1:])
         found, change = jax.linearize(densities, *values)
         return found, tuple(change(*(jnp.full_like(v, i == k) for k, v in enumerate(values))) for i in range(count))
 
@@ -113,8 +115,8 @@ def localise(basis: Any, on: Placed, state: State, share: Number = 1.0) -> Local
         weight * value,
         tuple(weight * f for f in first),
         tuple(tuple(weight * f for f in row) for row in second),
-        weight * done.T,
-        tuple(weight * f.T for f in done_first),
+        tuple(weight * f for f in done),
+        tuple(tuple(weight * f for f in row) for row in done_first),
         tuple(on.jacobian * f for f in turns),
         tuple(tuple(on.jacobian * f for f in row) for row in bends),
     )
@@ -124,7 +126,7 @@ def assemble(basis: Any, on: Placed, local: Local, count: int, together: bool = 
     """The equations from their pointwise derivatives, with `count` loads."""
     rest = _gradient(basis, on, local, local.first)
     gradients = [_gradient(basis, on, local, tuple(f[k] for f in local.works_first)) for k in range(count)]
-    values = local.works[:count].sum(axis=1)
+    values = jnp.stack([work.sum() for work in local.works[:count]])
     return System(stiffness(basis, on, local, together), rest, jnp.stack(gradients), values)
 
 

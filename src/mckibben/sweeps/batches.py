@@ -11,14 +11,13 @@ from typing import Any
 
 import attrs
 import jax
-import jax.numpy as jnp
 import numpy as np
 
 from mckibben.compiled.kernel import kernel
 from mckibben.discretise.fields import Placed, place
 from mckibben.discretise.placement import crowdings
 from mckibben.discretise.spectral import Line
-from mckibben.measure.many import appraised, polished
+from mckibben.measure.many import Appraised, appraised, polished
 from mckibben.measure.survey import PLAIN_SLOPE, error_of
 from mckibben.model.parameters import Parameters
 from mckibben.solver.batch import march
@@ -33,7 +32,7 @@ __all__ = ["Solved", "solve"]
 
 LARGEST = 48
 """Half-length unknowns up to which a batch goes; what needs more is solved singly."""
-CLOSE = 1e-3
+CLOSE = 2e-3
 """Last Newton step [rad] of every state over the square root of the tolerance: the error left is about its square."""
 
 
@@ -58,24 +57,21 @@ def solve(
     With several threads some batches are solved at a time; the numbers are the same.
     """
     found: list[Solved] = []
-    b = np.concatenate([_placement(part) for part in _split(group, MOST)])
     left = np.arange(len(group))
-    for size in (size for size in sizes_for("spectral", tolerance) if size <= LARGEST):
-        line = Line(size, group.ends)
-        batch = batch_size(line.unknowns)
-        with ThreadPoolExecutor(threads) as pool:
-            parts = [left[at : at + batch] for at in range(0, len(left), batch)]
-            tasks = [pool.submit(_on, group.take(part), b[part], line, tolerance) for part in parts]
+    with ThreadPoolExecutor(threads) as pool:
+        for size in (size for size in sizes_for("spectral", tolerance) if size <= LARGEST):
+            line = Line(size, group.ends)
+            paths = _followed(pool, group.take(left), line)
+            paths = _closer(pool, paths, CLOSE * np.sqrt(tolerance))
             coarse = []
-            for part, task in zip(parts, tasks, strict=True):
-                solved, where = task.result()
+            for solved, where in _read(pool, paths):
                 good = solved.numbers["error_estimate"].max(axis=1, initial=0.0) <= tolerance
                 found.append(_some(solved, good))
-                coarse.append(part[where[~good]])  # a finer space would not help those that were not followed
+                coarse.append(left[where[~good]])  # a finer space would not help those that were not followed
                 watch(sum(len(one.group) for one in found))
-        left = np.concatenate(coarse)
-        if not len(left):
-            break
+            left = np.concatenate(coarse)
+            if not len(left):
+                break
     return [one for one in found if len(one.group)]
 
 
@@ -106,11 +102,6 @@ def _placed(basis: Line, p: Parameters, b: Any) -> Placed:
     return jax.vmap(partial(place, basis))(p, b)
 
 
-def _split(group: Group, size: int) -> list[Group]:
-    places = np.arange(len(group))
-    return [group.take(places[at : at + size]) for at in range(0, len(group), size)]
-
-
 def _stacked(group: Group, size: int) -> Parameters:
     """Numbers of the designs as arrays (size), the last repeated where there are fewer."""
     made: Parameters = jax.tree.map(lambda values: _filled(values, size), group.p)
@@ -121,48 +112,129 @@ def _filled(rows: np.ndarray, size: int) -> np.ndarray:
     return np.concatenate([rows, np.repeat(rows[-1:], size - len(rows), axis=0)]) if len(rows) < size else rows
 
 
-def _on(group: Group, b: np.ndarray, line: Line, tolerance: float) -> tuple[Solved, np.ndarray]:
-    """The designs on one space that were followed cleanly, and which of the group's they are."""
-    held, (count, n) = group.held, group.wanted.shape[:2]
+@attrs.frozen
+class _Paths:
+    """Designs of a group on one space, each along its path: d designs, N rows of which the first n are states."""
+
+    group: Group
+    b: np.ndarray  #: (d)
+    line: Line
+    turned: np.ndarray  #: (d) whether the path is followed from its last state to its first
+    targets: np.ndarray  #: (d, N, 2) dimensionless
+    state: State  #: (d, N, m) and (d, N, 2)
+    change: np.ndarray  #: (d, N) largest change of psi [rad] in the last Newton step
+    good: np.ndarray  #: (d) whether every state was reached
+
+    @property
+    def states(self) -> int:
+        """Number n of states."""
+        return int(self.group.wanted.shape[1])
+
+    @property
+    def which(self) -> np.ndarray:
+        """Which rows hold."""
+        return rows_of(self.group.held, 2)[1]
+
+    def on(self, some: np.ndarray) -> Placed:
+        """Some of the designs on the space, as many as a batch takes."""
+        return _on(self.group.take(some), self.b[some], self.line)
+
+    def rows(self, values: np.ndarray, some: np.ndarray) -> np.ndarray:
+        """Rows (d, N, ...) of some of the designs, as (N, batch, ...)."""
+        return np.moveaxis(_filled(values[some], batch_size(self.line.unknowns)), 0, 1)
+
+    def parts(self, some: np.ndarray) -> list[np.ndarray]:
+        """Designs in parts, each a batch."""
+        size = batch_size(self.line.unknowns)
+        return [some[at : at + size] for at in range(0, len(some), size)]
+
+
+def _on(group: Group, b: np.ndarray, line: Line) -> Placed:
     size = batch_size(line.unknowns)
-    on = _placed(line, _stacked(group, size), _filled(b, size))
-    sizes = units(np.asarray(on.unit).T)
-    scale = np.stack([sizes[name] for name in held], axis=1)
-    targets = _filled(group.wanted, size) / scale[:, None]
+    placed: Placed = _placed(line, _stacked(group, size), _filled(b, size))
+    return placed
+
+
+def _followed(pool: ThreadPoolExecutor, group: Group, line: Line) -> _Paths:
+    """The designs along their paths, from rest."""
+    (count, n), m, size = group.wanted.shape[:2], line.unknowns, batch_size(line.unknowns)
     # pressure stretches the fibres: the path is followed from its end of higher pressure
-    turned = np.abs(targets[:, -1, 1]) > np.abs(targets[:, 0, 1])
-    targets = np.where(turned[:, None, None], targets[:, ::-1], targets)
-    rest = np.tile([1.0 if held[0] == "length" else 0.0, 0.0], (size, 1))
-    which = rows_of(held, 2)[1]
-    targets = np.moveaxis(padded(np.moveaxis(targets, 1, 0)), 0, 1)  # few lengths are compiled
-    steps = np.asarray(n)
-    path = march(line, on, which, rest, targets, steps)
-    good = np.asarray(path.reached) & np.asarray(path.rows.good)[:, :n].all(axis=1)
-    close, by_state = CLOSE * np.sqrt(tolerance), partial(jnp.moveaxis, source=0, destination=1)
-    states, targets = jax.tree.map(by_state, path.rows.state), by_state(targets)
-    done = polished(line, on, states, by_state(path.rows.change), which, targets, steps, np.asarray(close), good)
-    found = appraised(line, on, done.states, steps)
-    good &= (np.asarray(done.change)[:n] <= close).all(axis=0) & np.asarray(getattr(found, held[0]))[:n].all(axis=0)
-    good &= np.isfinite(np.asarray(done.states.u)[:n]).all(axis=(0, 2))
-    where = np.flatnonzero(good[:count])
-    return _read(group, b, line, found, done.states, turned, where), where
+    turned = np.abs(group.wanted[:, -1, 1]) > np.abs(group.wanted[:, 0, 1])
+    wanted = np.where(turned[:, None, None], group.wanted[:, ::-1], group.wanted)
+    targets = np.moveaxis(padded(np.moveaxis(wanted, 1, 0)), 0, 1)  # few lengths are compiled
+    rows = targets.shape[1]
+    blank = State(np.zeros((count, rows, m)), np.zeros((count, rows, 2)))
+    paths = _Paths(group, np.zeros(count), line, turned, targets, blank, np.zeros((count, rows)), np.zeros(count, bool))
+    rest = np.tile([1.0 if group.held[0] == "length" else 0.0, 0.0], (size, 1))
+
+    def one(some: np.ndarray) -> None:
+        paths.b[some] = _placement(group.take(some))
+        on = paths.on(some)
+        sizes = units(np.asarray(on.unit).T)
+        scaled = _filled(targets[some], size) / np.stack([sizes[name] for name in group.held], axis=1)[:, None]
+        path = march(line, on, paths.which, rest, scaled, np.asarray(n))
+        targets[some] = scaled[: len(some)]
+        _put(paths.state, some, path.rows.state)
+        paths.change[some] = np.asarray(path.rows.change)[: len(some)]
+        paths.good[some] = (np.asarray(path.reached) & np.asarray(path.rows.good)[:, :n].all(axis=1))[: len(some)]
+
+    list(pool.map(one, paths.parts(np.arange(count))))
+    return paths
 
 
-def _read(
-    group: Group, b: np.ndarray, line: Line, found: Any, states: State, turned: np.ndarray, where: np.ndarray
-) -> Solved:
-    """Some of the designs of a batch, each in the order in which its states were asked for."""
-    n = group.wanted.shape[1]
-    order = np.where(turned[where, None], np.arange(n)[::-1], np.arange(n))
+def _put(state: State, some: np.ndarray, rows: State) -> None:
+    """States of a batch (batch, N, ...) into those of all designs."""
+    state.u[some], state.loads[some] = (np.asarray(part)[: len(some)] for part in rows[:2])
 
-    def sorted_rows(rows: Any) -> np.ndarray:
-        values = np.moveaxis(np.asarray(rows)[:n], 0, 1)[where]
-        at = order.reshape(*order.shape, *(1,) * (values.ndim - 2))
-        return np.take_along_axis(values, at, axis=1)
 
-    seen = {name: sorted_rows(values) for name, values in found.numbers.items()}
+def _closer(pool: ThreadPoolExecutor, paths: _Paths, close: float) -> _Paths:
+    """Those whose last Newton step was too large polished, together; they alone, since a batch is as slow as one."""
+    n = paths.states
+    loose = np.flatnonzero(paths.good & (paths.change[:, :n].max(axis=1) > close))
+
+    def one(some: np.ndarray) -> None:
+        states, change, targets = (
+            jax.tree.map(lambda values: paths.rows(values, some), part)
+            for part in (paths.state, paths.change, paths.targets)
+        )
+        good = np.ones(len(change[0]), bool)
+        on = paths.on(some)
+        done = polished(paths.line, on, states, change, paths.which, targets, np.asarray(n), np.asarray(close), good)
+        _put(paths.state, some, jax.tree.map(lambda rows: np.moveaxis(np.asarray(rows), 0, 1), done.states))
+        paths.change[some] = np.moveaxis(np.asarray(done.change), 0, 1)[: len(some)]
+
+    list(pool.map(one, paths.parts(loose)))
+    finite = np.isfinite(paths.state.u[:, :n]).all(axis=(1, 2))
+    return attrs.evolve(paths, good=paths.good & (paths.change[:, :n] <= close).all(axis=1) & finite)
+
+
+def _read(pool: ThreadPoolExecutor, paths: _Paths) -> list[tuple[Solved, np.ndarray]]:
+    """What the states are, by batches, of the designs that were followed cleanly; and which these are."""
+
+    def one(some: np.ndarray) -> tuple[Solved, np.ndarray]:
+        states = jax.tree.map(lambda values: paths.rows(values, some), paths.state)
+        found = appraised(paths.line, paths.on(some), states, np.asarray(paths.states))
+        held = np.asarray(getattr(found, paths.group.held[0]))[: paths.states, : len(some)].all(axis=0)
+        good = np.flatnonzero(held & paths.good[some])
+        return _arranged(paths, found, some, good), some[good]
+
+    return list(pool.map(one, paths.parts(np.arange(len(paths.group)))))
+
+
+def _arranged(paths: _Paths, found: Appraised, some: np.ndarray, good: np.ndarray) -> Solved:
+    """The good ones of some designs, each in the order in which its states were asked for."""
+    n, where = paths.states, some[good]
+    order = np.where(paths.turned[where, None], np.arange(n)[::-1], np.arange(n))
+
+    def in_order(values: np.ndarray) -> np.ndarray:
+        return np.take_along_axis(values, order.reshape(*order.shape, *(1,) * (values.ndim - 2)), axis=1)
+
+    def by_design(rows: Any) -> np.ndarray:
+        return in_order(np.moveaxis(np.asarray(rows)[:n], 0, 1)[good])
+
+    seen = {name: by_design(values) for name, values in found.numbers.items()}
     seen["error_estimate"] = error_of(seen["conserved_variation"], seen["coefficient_tail"])
-    loads, slope, sideways = (sorted_rows(rows) for rows in (found.force, found.largest_slope, found.antisymmetric))
-    plain = sideways & (slope < PLAIN_SLOPE) & (loads | (group.held[0] == "length"))
-    state = State(sorted_rows(states.u), sorted_rows(states.loads))
-    return Solved(group.take(where), line, b[where], state, seen, plain, loads)
+    loads, slope, sideways = (by_design(rows) for rows in (found.force, found.largest_slope, found.antisymmetric))
+    plain = sideways & (slope < PLAIN_SLOPE) & (loads | (paths.group.held[0] == "length"))
+    state = State(in_order(paths.state.u[where, :n]), in_order(paths.state.loads[where, :n]))
+    return Solved(paths.group.take(where), paths.line, paths.b[where], state, seen, plain, loads)
