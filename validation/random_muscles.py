@@ -20,7 +20,7 @@ from judges import judge_target, placement, worth_of
 from sample import Case, draw, muscle_of
 
 import mckibben as mk
-from mckibben.experiments.solve import UNSTABLE
+from mckibben.experiments.answer import UNSTABLE
 from mckibben.solver.bench import Bench
 from mckibben.solver.find import find
 from mckibben.solver.held import Held

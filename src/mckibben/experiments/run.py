@@ -6,6 +6,7 @@ from collections.abc import Callable
 import numpy as np
 
 from mckibben.discretise.placement import crowding
+from mckibben.experiments.again import sought_again
 from mckibben.measure import survey as surveying
 from mckibben.measure.caution import thick_wall
 from mckibben.measure.report import Part, report
@@ -18,15 +19,11 @@ from mckibben.solver.bench import NEARLY, Bench, sizes_for
 from mckibben.solver.equilibrium import Equilibrium
 from mckibben.solver.find import at_rest, find, readings
 from mckibben.solver.held import NAMES, Held
-from mckibben.solver.path import INTERRUPTED, Trace, Watch, trace
+from mckibben.solver.path import INTERRUPTED, LOOSE, Trace, Watch, trace
 from mckibben.solver.problem import Basis, Problem
 from mckibben.spec import Along, Muscle, Step, Test
 
 __all__ = ["MuscleWarning", "corners", "run", "solved"]
-
-
-LOOSE = 1e-4
-"""Last Newton step, at most, of a state on a path; the error that is left is about its square."""
 
 
 class MuscleWarning(UserWarning):
@@ -76,7 +73,11 @@ def run(
     array([  3.29,  52.36, 101.22])
     """
     bench = Bench.of(muscle)
-    parts = solved(bench, test.as_steps(muscle), tolerance, discretisation, watch or (lambda k, n: None))
+    steps, tell = test.as_steps(muscle), watch or (lambda k, n: None)
+    parts = solved(bench, steps, tolerance, discretisation, tell)
+    if discretisation == "spectral":
+        b = _crowding(bench, steps)
+        parts = [sought_again(bench, part, b, tolerance, tell) for part in parts]
     result, notes = report(muscle, test, parts, float(bench.p.H0), thick_wall(muscle))
     for note in notes:
         warnings.warn(note, MuscleWarning, stacklevel=2)
@@ -154,7 +155,9 @@ def _follow(
         beyond_reach = k == possible < n and track.message != INTERRUPTED
         why = bench.too_long() if beyond_reach else track.message
         asked = max(k, 1) if step.along == Along.BRANCH and track.message != INTERRUPTED else n
-        parts.append(Part(held, asked, min(possible, asked), look, track.iterations[:k], why))
+        alone = step.gas is None and step.along != Along.BRANCH and why != INTERRUPTED
+        path = tuple(Held(held, tuple(row)) for row in wanted[:possible].tolist()) if alone else ()
+        parts.append(Part(held, asked, min(possible, asked), look, track.iterations[:k], why, path))
         here = track.state(k - 1) if k == asked and len(parts) < len(steps) else None
         if here is not None:
             present = {name: getattr(here, name) for name in NAMES}

@@ -4,27 +4,19 @@ from typing import Any
 
 import numpy as np
 
-from mckibben.experiments.limits import holding
+from mckibben.experiments.answer import Answer, answer
 from mckibben.measure.caution import before
 from mckibben.measure.report import Part, report
 from mckibben.measure.survey import survey
 from mckibben.results.result import State
 from mckibben.results.verdict import Verdict
-from mckibben.search.elsewhere import Else, Way, look_elsewhere, way_there
-from mckibben.search.finer import sharpened
-from mckibben.search.near_extension import near_extension, stretched
-from mckibben.search.walk import Look, look
-from mckibben.solver.bench import Bench, sizes_for
-from mckibben.solver.find import find
+from mckibben.search.elsewhere import Way
+from mckibben.search.walk import Look
+from mckibben.solver.bench import Bench
 from mckibben.solver.held import Held
 from mckibben.spec import Muscle, SpecError, Step
-from mckibben.units import show
 
-COARSE = 24
-"""Unknowns with which the pressure that would hold a length is looked for: it is told to three digits."""
-
-UNSTABLE = "an unstable state of another shape"
-"""In a reason: a symmetric state that tips to one side, found from another start than rest."""
+__all__ = ["solve"]
 
 
 def solve(
@@ -69,31 +61,21 @@ def solve(
         if getattr(step, name).needs_present:
             raise SpecError(f"solve.{name}", str(getattr(step, name)), "must be one value", "a path needs run()")
     held = Held.of(**{name: float(getattr(step, name).sample(1)[0]) for name in step.controls})
-    return _state(Bench.of(muscle), muscle, step, held, tolerance)
+    bench = Bench.of(muscle)
+    return _state(bench, muscle, step, held, answer(bench, held, tolerance))
 
 
-def _state(bench: Bench, muscle: Muscle, step: Step, held: Held, tolerance: float) -> State:
-    if held.get("length", 0.0) >= bench.longest:
-        return _nothing(bench, muscle, step, held, Verdict.NO_EQUILIBRIUM, bench.too_long())
-    found = seek(bench, held, tolerance)
-    if found.good:
-        return _made(bench, muscle, step, held, found)
-    way = way_there(bench, held, found.state.problem.b, tolerance)
-    if way is not None and way.end.complete and way.end.last is not None:
-        return _made(bench, muscle, step, held, way.end.last)
-    instead = look_elsewhere(bench, held, found, way, tolerance)
-    return _instead(bench, muscle, step, held, found, way, instead)
-
-
-def seek(bench: Bench, held: Held, tolerance: float) -> Look:
-    """Straight to a state, on as many unknowns as the tolerance needs."""
-    problem = bench.problem(sizes_for("spectral", tolerance)[0], bench.placement(held))
-    state = find(problem, held)
-    if not state.converged and near_extension(bench, held):
-        near = stretched(bench, state, held, tolerance)
-        if near.converged:
-            return look(near, held)
-    return sharpened(bench, state, held, tolerance, again=True)
+def _state(bench: Bench, muscle: Muscle, step: Step, held: Held, found: Answer) -> State:
+    more: dict[str, Any] = {"last_good": None if found.way is None else _last_good(bench, muscle, found.way)}
+    if found.asymmetric is not None:
+        more["asymmetric"] = _made(bench, muscle, step, held, found.asymmetric)
+    if found.given is not None:
+        return _made(bench, muscle, step, held, found.given, verdict=found.verdict, reason=found.reason, **more)
+    part = Part(
+        held.names, 1, 0 if found.verdict == Verdict.NO_EQUILIBRIUM else 1, None, np.zeros(0, int), found.reason
+    )
+    result, _ = report(muscle, step, [part], float(bench.p.H0), _before(muscle, held))
+    return State(result, found.verdict, found.reason, None, **more)
 
 
 def _made(bench: Bench, muscle: Muscle, step: Step, held: Held, found: Look, **more: Any) -> State:
@@ -106,90 +88,8 @@ def _made(bench: Bench, muscle: Muscle, step: Step, held: Held, found: Look, **m
     return State(result, verdict, reason, found.modes, **more)
 
 
-def _nothing(bench: Bench, muscle: Muscle, step: Step, held: Held, verdict: Verdict, reason: str, **more: Any) -> State:
-    part = Part(held.names, 1, 0 if verdict == Verdict.NO_EQUILIBRIUM else 1, None, np.zeros(0, int), reason)
-    result, _ = report(muscle, step, [part], float(bench.p.H0), _before(muscle, held))
-    return State(result, verdict, reason, None, **more)
-
-
-def _instead(
-    bench: Bench, muscle: Muscle, step: Step, held: Held, found: Look, way: Way | None, instead: Else
-) -> State:
-    """The best of what was found where the direct search gave nothing stable, and what was tried."""
-    symmetric, asymmetric = instead.symmetric, instead.asymmetric
-    other = None if asymmetric is None else _made(bench, muscle, step, held, asymmetric)
-    if symmetric is not None and symmetric.good:
-        reason = symmetric.verdict.reason + "; found from another shape than rest"
-        if way is not None:
-            reason += f": on the way there {_ending(way)}"
-        return _made(bench, muscle, step, held, symmetric, reason=reason)
-    if symmetric is not None and (symmetric is found or other is not None):
-        return _unstable(bench, muscle, step, held, found, way, instead, other)
-    if asymmetric is not None:
-        reason = asymmetric.verdict.reason + "; an asymmetric state"
-        if way is not None:
-            reason += f": on the way there {_ending(way)}"
-        return _made(bench, muscle, step, held, asymmetric, reason=reason)
-    verdict = found.verdict.verdict
-    if way is None:
-        return _nothing(bench, muscle, step, held, verdict, found.verdict.reason)
-    verdict = Verdict.INADMISSIBLE if verdict == Verdict.INADMISSIBLE else Verdict.NOT_CONVERGED
-    lacks = f"no {'stable' if symmetric else 'admissible'} state was found at {_said(held)}"
-    reason = f"{lacks}: {_ending(way)}{_tried(instead)}{_holds(bench, held)}"
-    return _nothing(bench, muscle, step, held, verdict, reason, last_good=_last_good(bench, muscle, way))
-
-
-def _unstable(
-    bench: Bench,
-    muscle: Muscle,
-    step: Step,
-    held: Held,
-    found: Look,
-    way: Way | None,
-    instead: Else,
-    other: State | None,
-) -> State:
-    """A symmetric state that tips to one side, and the asymmetric state that it goes to."""
-    symmetric, tipped = instead.symmetric, instead.tipped
-    assert symmetric is not None
-    reason = symmetric.verdict.reason
-    if other is not None:
-        reason += f"; the stable asymmetric state carries {show(other.force, 'N', 6)}"
-    elif tipped is not None:
-        reason += f"; no admissible asymmetric state was found either ({tipped.verdict.reason})"
-    if symmetric is not found and way is not None:
-        reason += f"; found from another shape than rest: on the way there {_ending(way)}"
-    last = None if other is not None else _last_good(bench, muscle, way)
-    return _made(bench, muscle, step, held, symmetric, reason=reason, asymmetric=other, last_good=last)
-
-
-def _ending(way: Way) -> str:
-    """Where the good states on the way to a target end, and why."""
-    axial, unit = ("length", "m") if "length" in way.first.names else ("force", "N")
+def _last_good(bench: Bench, muscle: Muscle, way: Way) -> State | None:
     if way.end.last is None:
-        return f"there is no good state at {_said(way.first)}, where {way.end.cause.reason}"
-    at = show(way.end.held.get(axial), unit, 5)
-    return f"from {_said(way.first)} good states end at {at}, where {way.end.cause.reason}"
-
-
-def _tried(instead: Else) -> str:
-    """What other starts gave: nothing, or a state that no muscle holds because it tips to nothing admissible."""
-    if instead.symmetric is not None:
-        force = show(instead.symmetric.state.force, "N", 5)
-        return f"; {UNSTABLE} carries {force}, but gives way to one side, to no admissible shape that was found"
-    return f"; {instead.tried} searches from other starts found none either" if instead.tried else ""
-
-
-def _holds(bench: Bench, held: Held) -> str:
-    """What pressure holds a length that this one does not."""
-    if "length" not in held.names:
-        return ""
-    enough = holding(bench, held.get("length"), held.get("pressure"), 1e-4, size=COARSE)
-    return f"; {show(enough, 'Pa', 3)} or more holds {show(held.get('length'), 'm', 5)}" if np.isfinite(enough) else ""
-
-
-def _last_good(bench: Bench, muscle: Muscle, way: Way | None) -> State | None:
-    if way is None or way.end.last is None:
         return None
     held = way.end.held
     step = Step(**dict(zip(held.names, held.values, strict=True)))
@@ -198,8 +98,3 @@ def _last_good(bench: Bench, muscle: Muscle, way: Way | None) -> State | None:
 
 def _before(muscle: Muscle, held: Held) -> list[str]:
     return before(muscle, held.get("length"), held.get("pressure", 0.0))
-
-
-def _said(held: Held) -> str:
-    units = {"length": "m", "volume": "m^3", "force": "N", "pressure": "Pa"}
-    return " and ".join(show(value, units[name], 5) for name, value in zip(held.names, held.values, strict=True))

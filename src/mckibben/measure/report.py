@@ -16,6 +16,7 @@ from mckibben.measure.work import work
 from mckibben.results.result import Result, Table, about
 from mckibben.results.variables import FIELDS
 from mckibben.results.verdict import Shape, Verdict
+from mckibben.solver.held import Held
 from mckibben.solver.path import INTERRUPTED
 from mckibben.spec import Muscle, Test
 
@@ -23,6 +24,15 @@ NUMBERS = (
     "length", "contraction", "force", "pressure", "volume", *(f"energy_{name}" for name in ENERGIES), "energy",
     "residual", "error_estimate", "coefficient_tail", "conserved_variation",
 )  # fmt: skip
+
+
+@attrs.frozen
+class Sought:
+    """One state of a step that was sought on its own: nothing was found, or a state on a problem of its own."""
+
+    judgement: Judgement
+    survey: Survey | None = None  #: of the one state
+    iterations: int = 0
 
 
 @attrs.frozen
@@ -35,6 +45,8 @@ class Part:
     survey: Survey | None
     iterations: np.ndarray  #: of the reached states
     why: str  #: why the rest was not reached
+    path: tuple[Held, ...] = ()  #: what each possible state holds
+    sought: dict[int, Sought] = attrs.field(factory=dict)  #: states sought on their own, instead of what following gave
 
     @property
     def reached(self) -> int:
@@ -55,7 +67,9 @@ def report(muscle: Muscle, test: Test, parts: list[Part], H0: float, cautions: l
     stopped = any(part.why == INTERRUPTED for part in parts)
     status = INTERRUPTED if stopped else "incomplete" if lost.any() else "complete"
     date = datetime.datetime.now(datetime.UTC).isoformat(timespec="seconds")
-    known = [part.survey.v for part in parts if part.survey is not None]
+    known = [
+        one.v for part in parts for one in (part.survey, *(s.survey for s in part.sought.values())) if one is not None
+    ]
     v = known[0] if known else np.linspace(0.0, H0, NODES)
     return Result(muscle, test, Table(steps, fields, v, about(muscle, test, versions(), date, notes, status))), notes
 
@@ -87,9 +101,25 @@ def _columns(k: int, part: Part, H0: float) -> dict[str, np.ndarray]:
         for name, values in found.items():
             column[name][seen] = values
         verdicts[seen] = look.verdicts
+    for i, one in part.sought.items():
+        verdicts[i] = one.judgement
+        for name, values in _single(one).items():
+            column[name][i] = values
     for name in ("verdict", "reason", "shape"):
         column[name] = np.array([str(getattr(verdict, name)) for verdict in verdicts])
     return column
+
+
+def _single(one: Sought) -> dict[str, Any]:
+    """Per-state variables of a state that was sought on its own."""
+    if one.survey is None:
+        return {"converged": False}
+    modes = one.survey.modes[0]
+    return {name: one.survey.numbers[name][0] for name in NUMBERS if name in one.survey.numbers} | {
+        "residual": one.survey.residual[0], "iterations": one.iterations, "converged": True,
+        "modes_length_control": modes.length_control, "modes_force_control": modes.force_control,
+        "modes_antisymmetric": -1 if modes.antisymmetric is None else modes.antisymmetric,
+    }  # fmt: skip
 
 
 def _fields(parts: list[Part]) -> dict[str, np.ndarray]:
@@ -100,8 +130,23 @@ def _fields(parts: list[Part]) -> dict[str, np.ndarray]:
         room = {name: np.full((part.asked, NODES), np.nan) for name in FIELDS}
         for name, values in seen.items():
             room[name][: part.reached] = values
+        for i, one in part.sought.items():
+            for name, values in _at(part, one).items():
+                room[name][i] = values
         rooms.append(room)
     return {name: np.concatenate([room[name] for room in rooms]) for name in FIELDS}
+
+
+def _at(part: Part, one: Sought) -> dict[str, np.ndarray]:
+    """Fields of a state sought on its own, at the points of the others."""
+    if one.survey is None:
+        return {}
+    fields, v = one.survey.fields, one.survey.v
+    if part.survey is None or np.array_equal(v, part.survey.v):
+        return {name: values[0] for name, values in fields.items()}
+    from scipy.interpolate import CubicSpline  # here: few states have points of their own
+
+    return {name: CubicSpline(v, values[0])(part.survey.v) for name, values in fields.items()}
 
 
 def _work(columns: list[dict[str, np.ndarray]], lost: np.ndarray) -> list[np.ndarray]:

@@ -38,10 +38,10 @@ class Else:
     tried: int
 
 
-def way_there(bench: Bench, held: Held, b: float, tolerance: float) -> Way | None:
-    """The way to a target, as far as its states are good.
+def way_there(bench: Bench, held: Held, b: float, tolerance: float, roughly: bool = False) -> Way | None:
+    """The way to a target, as far as its states are good; None where the pressure is not held.
 
-    On more unknowns until the last good state is good to the tolerance. None where the pressure is not held.
+    On more unknowns until the last good state is good to the tolerance, or `roughly` on the fewest.
     """
     axial = next((name for name in ("length", "force") if name in held.names), None)
     if axial is None or "pressure" not in held.names:
@@ -50,7 +50,7 @@ def way_there(bench: Bench, held: Held, b: float, tolerance: float) -> Way | Non
     end: BranchEnd | None = None
     for size, share in REFINED:
         end = branch_end(bench.problem(size, b), first, held, share, coarse=end)
-        if size >= SEARCH and (end.last is None or error_of(end.last.state) <= tolerance):
+        if roughly or (size >= SEARCH and (end.last is None or error_of(end.last.state) <= tolerance)):
             break
     assert end is not None
     return Way(first, end)

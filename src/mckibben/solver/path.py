@@ -14,7 +14,7 @@ from mckibben.solver.follow import follow_to
 from mckibben.solver.held import Held
 from mckibben.solver.problem import Problem
 
-__all__ = ["INTERRUPTED", "Rows", "Trace", "Watch", "trace"]
+__all__ = ["INTERRUPTED", "LOOSE", "Rows", "Trace", "Watch", "trace"]
 
 INTERRUPTED = "interrupted"
 """Message of a path that was ended by Ctrl-C."""
@@ -22,6 +22,8 @@ INTERRUPTED = "interrupted"
 JUMP = 0.6
 """Largest change of psi [rad] from state to state that is trusted to stay on the branch."""
 
+LOOSE = 1e-4
+"""Last Newton step, at most, of a state on a path; the error that is left is about its square."""
 FEW_LEGS = 4
 """States on the quick way from rest to the first one."""
 NEAR = 1e-5
