@@ -76,7 +76,7 @@ test_rows.__test__ = False  # type: ignore[attr-defined]  # not a test for pytes
 
 def _text(declared: Declared, value: Any) -> str:
     if declared.kind == "quantity":
-        return declared.text(value)
+        return declared.explained(value)
     if declared.kind == "quantities":
         return ", ".join(declared.text(item) for item in value)
     return str(value)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
@@ -64,7 +65,7 @@ def _swept(asked: SweepCase) -> list[tuple[str, str]]:
 
     assert asked.case.test is not None  # read_sweep raises without a test
     wanted = plan(asked.case.muscle, asked.case.test, asked.over, asked.designs, chunk=asked.chunk)
-    rows = [(varied.field, _range(varied.coordinate, varied.unit)) for varied in wanted.varied]
+    rows = [(varied.field, _range(varied.coordinate, varied.about)) for varied in wanted.varied]
     return [*rows, ("designs in all", str(len(wanted)))]
 
 
@@ -168,7 +169,7 @@ def _sweep(file: Path) -> list[tuple[str, str]]:
     ]
     for name, coordinate in data.coords.items():
         if name != "step":
-            rows.append((str(name), _range(coordinate.values, coordinate.attrs.get("units", ""))))
+            rows.append((str(name), _range(coordinate.values, coordinate.attrs)))
     for name, unit in (("length", "mm"), ("force", "N"), ("pressure", "bar"), ("peak_fibre_tension", "N")):
         values = data[name].values
         values = from_si(values[~np.isnan(values)], unit)
@@ -176,13 +177,17 @@ def _sweep(file: Path) -> list[tuple[str, str]]:
     return rows
 
 
-def _range(values: Any, unit: str) -> str:
+def _range(values: Any, about: Mapping[str, Any]) -> str:
     """The values of a swept field in words: their number and either the range or all of them."""
     from mckibben.units import DISPLAY, from_si
 
+    unit, measured = str(about.get("units", "")), about.get("measured_from")
     if values.dtype.kind not in "if":
         words = list(dict.fromkeys(str(value) for value in values))
         return f"{len(values)}: " + ", ".join(words[:6]) + (", ..." if len(words) > 6 else "")
     shown = "" if unit == "1" else DISPLAY.get(unit, unit)
     numbers = from_si(values, shown) if shown else values
-    return f"{len(values)}: {numbers.min():.6g} to {numbers.max():.6g} {shown}".rstrip()
+    said = f"{len(values)}: {numbers.min():.6g} to {numbers.max():.6g} {shown}".rstrip()
+    if measured in ("parallels", "axis"):
+        return f"{said} from the {measured}"
+    return f"{said}, from what {measured} says" if measured else said

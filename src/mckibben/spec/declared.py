@@ -10,9 +10,10 @@ from typing import TYPE_CHECKING, Any, Generic, TypeVar
 
 import attrs
 
-from mckibben.units import Number, show
+from mckibben.spec.angle import as_written
+from mckibben.units import Number, is_traced, show
 
-__all__ = ["Declared", "Reads", "as_call", "declare", "describe", "evolved", "numbers", "walk"]
+__all__ = ["Declared", "Reads", "as_call", "declare", "describe", "evolved", "in_own_words", "numbers", "walk"]
 
 T = TypeVar("T")
 V = TypeVar("V")
@@ -49,7 +50,9 @@ class Declared:
     parts: tuple[type, ...] = ()
     options: tuple[str, ...] = ()
     stored: bool = True
-    """False for a field that only says how another is read (angle_from)."""
+    """False for a field that only says how another is read (angle_from); it may be given anew all the same."""
+    explain: Callable[[float], str] | None = attrs.field(default=None, repr=False)
+    """Says a value in full where the plain number is open to mistakes."""
     static: bool = False
     """True for a number that decides what is computed (how many states) and cannot be varied a little."""
 
@@ -71,6 +74,10 @@ class Declared:
 
     def text(self, value: float) -> str:
         return f"{value:.0f}" if self.kind == "count" else show(value, self.display or self.unit)
+
+    def explained(self, value: float) -> str:
+        """A value as text, with what it may be mistaken for: an angle is shown in both conventions."""
+        return self.text(value) if self.explain is None or is_traced(value) else self.explain(value)
 
     def contains(self, value: float) -> bool:
         """Whether an SI value is in range; NaN is in no range."""
@@ -145,14 +152,30 @@ def numbers(value: Any, prefix: str = "") -> Iterator[tuple[str, Declared, Numbe
 
 
 def as_call(self: Any) -> str:
-    """A spec object as the Python call that makes it, in display units; fields that are None or empty are left out."""
+    """A spec object as the Python call that makes it, in display units; fields that are None or empty are left out.
+
+    What its class has to remark comes after it, as a comment.
+    """
+    remark = self.__remark__() if hasattr(self, "__remark__") else ""
+    return _call(self) + (f"  # {remark}" if remark else "")
+
+
+def in_own_words(value: Any) -> dict[str, Any]:
+    """The fields of a spec object that say it: those that are stored, an angle as the braid's own words have it."""
+    names = [declared.name for declared in describe(type(value)) if declared.stored]
+    said = {name: getattr(value, name) for name in names}
+    return said | as_written(said["angle"], value.measured_from) if hasattr(value, "measured_from") else said
+
+
+def _call(self: Any) -> str:
     parts = []
+    own = in_own_words(self)
     for declared in describe(type(self)):
-        value = getattr(self, declared.name)
+        value = own.get(declared.name)
         if declared.kind == "quantity" and isinstance(value, float) and declared.unit != "1":
             value = show(value, declared.display or declared.unit, digits=12)
         elif isinstance(value, StrEnum):
             value = str(value)
-        if declared.stored and value is not None and not (isinstance(value, tuple) and not value):
-            parts.append(f"{declared.name}={value!r}")
+        if value is not None and not (isinstance(value, tuple) and not value):
+            parts.append(f"{declared.name}={_call(value) if declared.kind == 'part' else repr(value)}")
     return f"{type(self).__name__}({', '.join(parts)})"

@@ -47,13 +47,14 @@ def quantity(
     source: str = "",
     advice: str = "",
     default: Any = attrs.NOTHING,
+    explain: Callable[[float], str] | None = None,
 ) -> Any:
     """A number with an SI unit ("1" for none). With `default=None` the field may be left out."""
     return declare(
         Declared(
             kind="quantity", read=read_quantity, unit=unit, meaning=meaning, low=low, high=high, low_open=low_open,
             high_open=high_open, display=display or DISPLAY.get(unit, ""), source=source, advice=advice,
-            default=default,
+            default=default, explain=explain,
         )
     )  # fmt: skip
 

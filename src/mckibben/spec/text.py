@@ -14,7 +14,7 @@ import attrs
 import tomli_w
 
 from mckibben.spec import presets
-from mckibben.spec.declared import Declared, describe
+from mckibben.spec.declared import Declared, describe, in_own_words
 from mckibben.spec.errors import MISSING, SpecError, nearest
 from mckibben.spec.laws import LAWS, CustomLaw
 from mckibben.spec.loading import TESTS, Step, Test
@@ -192,9 +192,10 @@ def plain(value: Any) -> Any:
 
 def _written(value: Any, allow_custom: bool) -> dict[str, Any]:
     table = {}
+    own = in_own_words(value)
     for item in describe(type(value)):
-        held = getattr(value, item.name)
-        if not item.stored or held is None or (item.kind == "names" and not held):
+        held = own.get(item.name)
+        if held is None or (item.kind == "names" and not held):
             continue
         table[item.name] = _plain(item, held, allow_custom)
     return table

@@ -57,7 +57,7 @@ def declared_at(muscle: Muscle, test: Test, name: str) -> Declared:
 
 
 def _fields(owner: Any) -> dict[str, Declared]:
-    return {item.name: item for item in describe(type(owner)) if item.stored}
+    return {item.name: item for item in describe(type(owner))}
 
 
 def _names(muscle: Muscle, test: Test) -> list[str]:

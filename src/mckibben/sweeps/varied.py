@@ -31,6 +31,7 @@ class Varied:
     values: tuple[Any, ...]
     unit: str  #: SI unit, "" where the values are no numbers
     meaning: str
+    measured_from: str = ""  #: of an angle: "parallels", "axis", or the field that says which
 
     @property
     def plain(self) -> list[Any]:
@@ -51,7 +52,8 @@ class Varied:
     def about(self) -> dict[str, str]:
         """Attributes of the coordinate."""
         number = self.coordinate.dtype.kind in "if"
-        return {"long_name": self.meaning} | ({"units": self.unit or "1"} if number else {})
+        measured = {"measured_from": self.measured_from} if self.measured_from else {}
+        return {"long_name": self.meaning} | ({"units": self.unit or "1"} if number else {}) | measured
 
 
 def _shown(value: Any) -> Any:
@@ -70,7 +72,7 @@ def from_lists(muscle: Muscle, test: Test, over: Mapping[str, Any]) -> tuple[Var
     """
     if not isinstance(over, Mapping) or not over:
         raise SpecError("over", over, "must name at least one field", 'such as {"braid.angle": ["30 deg", "36 deg"]}')
-    return _distinct([_varied(muscle, test, str(name), values) for name, values in over.items()])
+    return _checked(muscle, [_varied(muscle, test, str(name), values) for name, values in over.items()])
 
 
 def _varied(muscle: Muscle, test: Test, name: str, given: Any) -> Varied:
@@ -118,11 +120,19 @@ def _range(name: str, declared: Declared, given: Mapping[str, Any]) -> list[Any]
     return values
 
 
-def _distinct(found: list[Varied]) -> tuple[Varied, ...]:
+def _checked(muscle: Muscle, found: list[Varied]) -> tuple[Varied, ...]:
+    """The fields, none of them twice, and an angle with what it is measured from."""
     names = [varied.field for varied in found]
     for name in names:
         if names.count(name) > 1:
             raise SpecError(name, allowed="is given twice")
+    if "braid.angle" not in names:
+        return tuple(found)
+    says = [name for name in ("braid.angle_from", "braid") if name in names]
+    measured = says[0] if says else str(muscle.braid.measured_from)
+    meaning = "braid angle theta0, measured from the " + (f"one that {measured} says" if says else measured)
+    angle = found[names.index("braid.angle")]
+    found[names.index("braid.angle")] = attrs.evolve(angle, meaning=meaning, measured_from=measured)
     return tuple(found)
 
 
@@ -146,7 +156,7 @@ def from_table(muscle: Muscle, test: Test, designs: Any) -> tuple[Varied, ...]:
         found.append(Varied(full_name(name), values, kind, declared.meaning))
     if not found or not found[0].values:
         raise SpecError("designs", allowed="holds no designs", advice="give one row for each, below the heads")
-    return _distinct(found)
+    return _checked(muscle, found)
 
 
 def _with_unit(item: Any, unit: str | None) -> Any:
