@@ -10,6 +10,7 @@ import xarray as xr
 
 import mckibben as mk
 from mckibben.app.fields import muscle_rows
+from mckibben.app.look import _short
 from mckibben.spec.angle import MAGIC, as_written, tendency
 from mckibben.spec.text import from_mapping, muscle_from_mapping, to_mapping, to_toml
 from mckibben.spec.vary import changed
@@ -130,6 +131,7 @@ def test_tables_and_reprs_show_both() -> None:
     assert "angle='25 deg'" in repr(steep)
     assert eval(repr(steep), vars(mk.spec) | {name: getattr(mk, name) for name in dir(mk)}) == steep
     assert {row[0]: row[1] for row in muscle_rows(steep)}["braid.angle"] == both
+    assert _short("braid.angle", both, "the angle") == ("braid.angle", "65 deg", f"the angle: {both}")
 
 
 def test_what_a_braid_does_under_pressure() -> None:

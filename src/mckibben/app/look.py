@@ -44,7 +44,7 @@ def check(
     columns = ("field", "value", "meaning", "source")
     rows = list(fields.muscle_rows(found.muscle))
     marks, sources = fields.numbered(row[3] for row in rows)
-    marked = [(*row[:3], mark) for row, mark in zip(rows, marks, strict=True)]
+    marked = [(*_short(*row[:3]), mark) for row, mark in zip(rows, marks, strict=True)]
     say(table(columns, marked, title=f"Muscle{name}", whole=(0, 1, 3)))
     for source in sources:
         say(source)
@@ -58,6 +58,17 @@ def check(
         say(note)
     if found.test is None:
         say('There is no test: add a [test] table, such as kind = "isometric".')
+
+
+def _short(field: str, value: str, meaning: str) -> tuple[str, str, str]:
+    """A row with a short value: from what an angle is measured goes to its meaning."""
+    number, measured, more = value.partition(" from the ")
+    return field, number, f"{meaning}: {number}{measured}{more}" if measured else meaning
+
+
+def _narrow(value: str) -> str:
+    """A value for a column: what is added in brackets goes on a line of its own."""
+    return value.replace(" (", "\n(")
 
 
 def _swept(asked: SweepCase) -> list[tuple[str, str]]:
@@ -90,7 +101,7 @@ def presets(
     if toml:
         typer.echo(fields.case_text(name), nl=False)
         return
-    rows = [(field, value, source) for field, value, _, source in fields.muscle_rows(muscle)]
+    rows = [(field, _narrow(value), source) for field, value, _, source in fields.muscle_rows(muscle)]
     say(table(("field", "value", "source"), rows, title=f'Muscle "{name}"', whole=(0, 1)))
 
 

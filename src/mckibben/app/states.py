@@ -8,6 +8,7 @@ from typing import Any
 
 from mckibben.app.console import COMPLETE, INCOMPLETE, INTERRUPTED, say, table
 from mckibben.app.fields import muscle_rows
+from mckibben.experiments import foresee
 from mckibben.files.table import rows
 from mckibben.results.result import Result
 from mckibben.results.variables import STEP
@@ -50,6 +51,7 @@ def show(result: Result, tolerance: float) -> None:
             most=MOST_ROWS,
         )
     )
+    say(foresee.turns(result.muscle))
     for note in _notes(result, states, tolerance):
         say(note)
 

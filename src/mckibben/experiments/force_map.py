@@ -7,6 +7,7 @@ import xarray as xr
 
 from mckibben.experiments.run import run
 from mckibben.spec import Isobaric, Muscle, Step
+from mckibben.spec.plausible import trusted
 from mckibben.spec.text import to_toml
 
 VARIABLES = {"force": "N", "volume": "m^3", "contraction": "1", "energy": "J"}
@@ -35,10 +36,12 @@ def force_map(
     >>> table.force.sel(pressure=1e5).values.round(2)  # N
     array([101.22,  79.87,  61.77])
     """
-    grid = Step(length=length, pressure=1.0, points=points), Step(length=1.0, pressure=pressure, points=points)
+    grid = Step(length=length, force=0.0, points=points), Step(force=0.0, pressure=pressure, points=points)
     lengths, pressures = (getattr(step, name) for step, name in zip(grid, ("length", "pressure"), strict=True))
     heights, levels = lengths.sample(grid[0].points), pressures.sample(grid[1].points)
-    curves = [run(muscle, Isobaric(pressure=float(P), length=heights.tolist()), tolerance=tolerance) for P in levels]
+    with trusted():  # these numbers were read above
+        tests = [Isobaric(pressure=float(P), length=heights.tolist()) for P in levels]
+    curves = [run(muscle, test, tolerance=tolerance) for test in tests]
     axes = ("pressure", "length")
     variables: dict[str, Any] = {
         name: (axes, np.stack([curve.data[name].values for curve in curves]), {"units": unit})

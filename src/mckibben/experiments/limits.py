@@ -100,8 +100,7 @@ def limits(muscle: Muscle, *, pressure: Any) -> Limits:
 
 def _value(name: str, value: Any) -> float:
     """One controlled quantity from what a user gives."""
-    other = "length" if name == "pressure" else "pressure"
-    path = getattr(Step(**{name: value, other: 1.0}), name)
+    path = getattr(Step(**{name: value, "force": 0.0}), name)
     if path.needs_present or path.varies:
         raise SpecError(f"limits.{name}", str(path), "must be one value")
     return float(path.sample(1)[0])
@@ -200,9 +199,9 @@ def working_range(muscle: Muscle, *, pressures: Any) -> xr.Dataset:
     >>> (1e3 * region.shortest.values).round(1), (1e3 * region.longest.values).round(1)  # mm
     (array([32.1]), array([128.8]))
     """
-    step = Step(pressure=pressures, length=1.0)
+    step = Step(pressure=pressures, force=0.0)
     path = Path.parse(pressures, "Pa")
-    found = [limits(muscle, pressure=float(P)) for P in path.sample(step.points)]
+    found = [limits(muscle, pressure=Path((float(P),), unit="Pa")) for P in path.sample(step.points)]
     about = {"muscle": to_toml(muscle, allow_custom=True), "assumed": ", ".join(muscle.assumed)}
     units = {"shortest": "m", "stable_down_to": "m", "longest": "m", "shortest_force": "N", "force_extremum": "N"}
     variables = {

@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Any, Generic, TypeVar
 import attrs
 
 from mckibben.spec.angle import as_written
+from mckibben.spec.plausible import Doubt, trusted
 from mckibben.units import Number, is_traced, show
 
 __all__ = ["Declared", "Reads", "as_call", "declare", "describe", "evolved", "in_own_words", "numbers", "walk"]
@@ -51,6 +52,8 @@ class Declared:
     options: tuple[str, ...] = ()
     stored: bool = True
     """False for a field that only says how another is read (angle_from); it may be given anew all the same."""
+    doubt: Doubt | None = None
+    """Sizes of a bare number that are absurd in SI and plausible in the usual unit."""
     explain: Callable[[float], str] | None = attrs.field(default=None, repr=False)
     """Says a value in full where the plain number is open to mistakes."""
     static: bool = False
@@ -100,8 +103,18 @@ def declare(declared: Declared) -> Any:
 
 def evolved(value: T, **changes: Any) -> T:
     """A copy of a spec object with some fields changed; the new values are read and checked as when it was made."""
-    copy: T = attrs.evolve(value, **changes)  # type: ignore[misc]  # made by attrs inside `spec`
+    kinds = {item.name: item for item in describe(type(value))}
+    read = {name: _read_again(value, kinds.get(name), new) for name, new in changes.items()}
+    with trusted():  # what stays was read before
+        copy: T = attrs.evolve(value, **read)  # type: ignore[misc]  # made by attrs inside `spec`
     return copy
+
+
+def _read_again(owner: Any, declared: Declared | None, new: Any) -> Any:
+    """A new value as its field reads it, by itself."""
+    if declared is None or new is None or declared.kind not in ("quantity", "path", "held"):
+        return new
+    return declared.read(new, f"{owner.__spec_path__}.{declared.name}", declared)
 
 
 def describe(cls: type) -> tuple[Declared, ...]:

@@ -10,12 +10,14 @@ from enum import StrEnum
 from typing import Any, ClassVar
 
 import attrs
+import numpy as np
 
 from mckibben.spec.declared import Declared, Reads, declare
 from mckibben.spec.errors import SpecError
 from mckibben.spec.fields import choice, count, spec
 from mckibben.spec.muscle import Muscle
 from mckibben.spec.path import Path, PathMode
+from mckibben.spec.plausible import CONTROLLED, reading
 from mckibben.units import DISPLAY, UnitError, is_traced
 
 __all__ = [
@@ -32,6 +34,8 @@ __all__ = [
 
 ATMOSPHERE = 101325.0
 """Standard atmosphere [Pa]: no gauge pressure is below minus this."""
+HIGHEST = 1e9
+"""Highest gauge pressure taken [Pa]: 10,000 bar, ten times what any vessel of a workshop holds."""
 
 
 def _read_path(value: Any, field: str, declared: Declared) -> Path:
@@ -39,9 +43,13 @@ def _read_path(value: Any, field: str, declared: Declared) -> Path:
         path = Path.parse(value, declared.unit)
     except UnitError as error:
         raise SpecError(field, value, str(error), error.advice) from error
+    given = () if isinstance(value, Path) else value if isinstance(value, (list, tuple, np.ndarray)) else (value,)
+    meant = reading(list(given), declared.unit, declared.doubt)
     for waypoint in path.waypoints:
         if not is_traced(waypoint) and not declared.contains(waypoint):
-            raise SpecError(field, value, f"must be {declared.allowed}", declared.advice)
+            raise SpecError(field, value, f"must be {declared.allowed}", meant or declared.advice)
+    if meant:
+        raise SpecError(field, value, "a number without a unit is in SI", meant)
     if declared.kind == "held" and path.mode != PathMode.CONSTANT:
         raise SpecError(field, value, "must be one value", f"this test holds its {field.rpartition('.')[2]}")
     return path
@@ -50,16 +58,20 @@ def _read_path(value: Any, field: str, declared: Declared) -> Path:
 _QUANTITIES: dict[str, dict[str, Any]] = {
     "length": {"unit": "m", "meaning": "distance between the fittings", "low": 0.0, "low_open": True},
     "force": {"unit": "N", "meaning": "axial force, > 0 where the muscle pulls its fittings together"},
-    "pressure": {"unit": "Pa", "meaning": "gauge pressure", "low": -ATMOSPHERE, "advice": "pressure is gauge"},
+    "pressure": {
+        "unit": "Pa", "meaning": "gauge pressure", "low": -ATMOSPHERE, "high": HIGHEST, "advice": "pressure is gauge",
+    },
     "volume": {"unit": "m^3", "meaning": "volume inside the braid", "low": 0.0, "low_open": True},
-}
+}  # fmt: skip
 
 
 def controlled(name: str, *, held: bool = False, default: Any = attrs.NOTHING) -> Any:
     """A field for one of the controlled quantities; with `held` only one value is allowed."""
     display = DISPLAY.get(_QUANTITIES[name]["unit"], "")
-    kind = "held" if held else "path"
-    return declare(Declared(kind=kind, read=_read_path, default=default, display=display, **_QUANTITIES[name]))
+    kind, doubt = "held" if held else "path", CONTROLLED.get(_QUANTITIES[name]["unit"])
+    return declare(
+        Declared(kind=kind, read=_read_path, default=default, display=display, doubt=doubt, **_QUANTITIES[name])
+    )
 
 
 DEFAULT_POINTS = 21
@@ -120,7 +132,7 @@ class Step:
     Args:
         length: distance between the fittings [m], above 0.
         force: axial force [N], positive where the muscle pulls its fittings together.
-        pressure: gauge pressure [Pa], not below minus one atmosphere (-101325 Pa).
+        pressure: gauge pressure [Pa], not below minus one atmosphere (-101325 Pa) nor above 10,000 bar.
         volume: volume inside the braid [m^3], above 0.
         gas: "isothermal" or "adiabatic": the gas inside as the step begins is sealed in, and pressure and volume follow
             its law. In place of one of the two quantities; the other is length or force.
@@ -287,7 +299,7 @@ class BlockedForce:
         _settle_points(self)
 
     def as_steps(self, muscle: Muscle) -> tuple[Step, ...]:
-        length = muscle.braid.length if self.length is None else self.length
+        length = Path((muscle.braid.length,), unit="m") if self.length is None else self.length
         return (Step(length=length, pressure=self.pressure, points=self.points),)
 
 

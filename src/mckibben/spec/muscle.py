@@ -82,7 +82,7 @@ class Fibre:
     """
 
     diameter: Reads[float | None] = quantity(
-        "m", meaning="diameter of the round solid fibre", low=0.0, low_open=True, default=None
+        "m", meaning="diameter of the round solid fibre", low=0.0, low_open=True, default=None, doubt=(0.05, 50.0)
     )
     E: Reads[float | None] = quantity(
         "Pa", meaning="Young's modulus", low=0.0, low_open=True, display="GPa", default=None
@@ -158,13 +158,17 @@ class Braid:
     """
 
     radius: Reads[float] = quantity(
-        "m", meaning="radius R0 of the fibres' centre lines", low=0.0, low_open=True, source="Eq. (11)"
+        "m", meaning="radius R0 of the fibres' centre lines", low=0.0, low_open=True, source="Eq. (11)",
+        doubt=(1.0, 1e3),
+    )  # fmt: skip
+    length: Reads[float] = quantity(
+        "m", meaning="length H0 between the fittings", low=0.0, low_open=True, doubt=(10.0, 1e4)
     )
-    length: Reads[float] = quantity("m", meaning="length H0 between the fittings", low=0.0, low_open=True)
     angle: Reads[float] = quantity(
         "rad", meaning="braid angle theta0 between fibres and parallels", low=0.0, low_open=True, high=math.pi / 2.0,
         high_open=True, source="Eq. (11)",
         advice='give the angle from the parallels, or set angle_from = "axis"', explain=both_ways,
+        doubt=(math.pi / 2.0, 90.0),
     )  # fmt: skip
     fibres: Reads[int] = count(
         meaning="number N of fibres, both hands together; even", low=2, high=100_000, advice="count both hands"
@@ -231,7 +235,7 @@ class Chamber:
     """
 
     thickness: Reads[float] = quantity(
-        "m", meaning="wall thickness t0 as made", low=0.0, low_open=True, source="Eq. (26)"
+        "m", meaning="wall thickness t0 as made", low=0.0, low_open=True, source="Eq. (26)", doubt=(0.1, 100.0)
     )
     law: Law = part(*LAWS.values(), meaning="hyperelastic law of the elastomer")
 

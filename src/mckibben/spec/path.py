@@ -10,6 +10,7 @@ import attrs
 import numpy as np
 from numpy.typing import NDArray
 
+from mckibben.spec.plausible import CONTROLLED, as_text
 from mckibben.units import Number, UnitError, is_traced, show, split, to_si
 
 __all__ = ["Path", "PathMode"]
@@ -122,10 +123,9 @@ class Path:
     def to_plain(self) -> Any:
         """The path as a TOML value that reads back equal: an SI float, a list of them, or text with exact numbers."""
         numbers = [float(value) for value in self.waypoints]
-        if self.mode == PathMode.CONSTANT:
-            return numbers[0]
-        if self.mode == PathMode.LIST:
-            return numbers
+        if self.mode in (PathMode.CONSTANT, PathMode.LIST):
+            written = [as_text(number, self.unit, CONTROLLED.get(self.unit)) for number in numbers]
+            return written if self.mode == PathMode.LIST else written[0]
         if self.mode == PathMode.HOLD:
             return "hold"
         lead = "to " if self.mode == PathMode.RAMP_FROM_PRESENT else ""

@@ -21,6 +21,7 @@ from mckibben.spec.loading import TESTS, Step, Test
 from mckibben.spec.merge import apply_overrides, merged
 from mckibben.spec.muscle import Muscle
 from mckibben.spec.path import Path
+from mckibben.spec.plausible import as_text
 
 __all__ = [
     "Case",
@@ -215,7 +216,7 @@ def _plain(item: Declared, held: Any, allow_custom: bool) -> Any:
         return str(held)
     if isinstance(held, tuple):
         return [entry if isinstance(entry, str) else float(entry) for entry in held]
-    return float(held) if item.kind == "quantity" else held
+    return as_text(float(held), item.unit, item.doubt) if item.kind == "quantity" else held
 
 
 def _custom(law: CustomLaw, allowed: bool) -> dict[str, Any]:

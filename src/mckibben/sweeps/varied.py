@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import csv
 import re
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from os import PathLike, fspath
 from typing import Any
 
@@ -105,7 +105,7 @@ def _read(name: str, declared: Declared, item: Any, where: str) -> Any:
         raise error.renamed(f"{where} ({error.field})" if error.field != full_name(name) else where) from error
 
 
-def _range(name: str, declared: Declared, given: Mapping[str, Any]) -> list[Any]:
+def _range(name: str, declared: Declared, given: Mapping[str, Any]) -> Sequence[Any]:
     points = given.get("points")
     if set(given) != _RANGE or not isinstance(points, int) or isinstance(points, bool) or points < 2:
         said = "must give from, to and points (a whole number, at least 2)"
@@ -117,7 +117,8 @@ def _range(name: str, declared: Declared, given: Mapping[str, Any]) -> list[Any]
     if np.isnan(first + last):
         raise SpecError(f"over.{name}", dict(given), "must go from one number to another")
     values: list[float] = np.linspace(first, last, points).tolist()
-    return values
+    unit = "" if declared.unit in ("", "1") else declared.unit  # the ends were read: what lies between is not doubted
+    return [f"{value!r} {unit}" for value in values] if unit else values
 
 
 def _checked(muscle: Muscle, found: list[Varied]) -> tuple[Varied, ...]:
