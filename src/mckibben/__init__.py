@@ -20,7 +20,7 @@ _PUBLIC = {
     "mckibben.experiments.response": ("response",),
     "mckibben.experiments.sensitivity": ("sensitivity",),
     "mckibben.results.sensitivity": ("Sensitivity",),
-    "mckibben.view.curves": ("plot",),
+    "mckibben.view.plot": ("plot",),
     "mckibben.results.result": ("Result", "State"),
     "mckibben.files.case": ("read_case",),
     "mckibben.files.store": ("save",),

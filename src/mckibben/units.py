@@ -37,6 +37,8 @@ _USUAL = {
 """The usual units with their SI unit and factor, which need no pint; a test compares them with pint's."""
 
 _NUMBER = re.compile(r"([+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?)\s*(.*)", re.DOTALL)
+_COMMA = re.compile(r",(\d+)\s*(.*)", re.DOTALL)
+"""What follows the digits before a decimal comma: "12,5 mm"."""
 # Only names, one-digit powers and separators reach pint, whose own reader would evaluate any arithmetic ("9**9**9").
 _WORD = r"[A-Za-zµμ]+(?: ?(?:\^|\*\*) ?-?\d)?"
 _UNIT = re.compile(rf"{_WORD}(?:(?: ?[*/] ?| ){_WORD})*")
@@ -151,6 +153,10 @@ def _from_text(text: str, unit: str) -> float:
     if found is None:
         raise UnitError("must be a number", _example(unit))
     number, written = found
+    comma = _COMMA.fullmatch(written)
+    if comma:
+        pointed = f"{number}.{comma[1]} {comma[2]}".rstrip()
+        raise UnitError("has a comma in its number", f'write a decimal point: "{pointed}"')
     try:
         plain = float(number)
         if not written and unit != "1":

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import csv
 import re
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping
 from os import PathLike, fspath
 from typing import Any
 
@@ -13,6 +13,7 @@ import numpy as np
 
 from mckibben.spec import Muscle, Path, PathMode, SpecError, Test
 from mckibben.spec.declared import Declared
+from mckibben.spec.plausible import trusted
 from mckibben.spec.text import plain
 from mckibben.spec.vary import declared_at, full_name, read
 from mckibben.units import is_traced
@@ -21,6 +22,8 @@ __all__ = ["Varied", "from_lists", "from_table"]
 
 _HEAD = re.compile(r"\s*([^\[\]]+?)\s*(?:\[([^\[\]]*)\])?\s*")
 _RANGE = {"from", "to", "points"}
+MOST = 10_000_000
+"""Most values of one field."""
 
 
 @attrs.frozen
@@ -78,7 +81,9 @@ def from_lists(muscle: Muscle, test: Test, over: Mapping[str, Any]) -> tuple[Var
 def _varied(muscle: Muscle, test: Test, name: str, given: Any) -> Varied:
     declared = declared_at(muscle, test, name)
     if isinstance(given, Mapping) and set(given) & _RANGE and declared.kind != "part":
-        given = _range(name, declared, given)
+        between = _range(name, declared, given)
+        with trusted():  # its ends were read
+            return _of(name, declared, between, f"over.{name}")
     if hasattr(given, "magnitude") and np.ndim(given.magnitude) == 1:
         given = [item * given.units for item in given.magnitude]
     if isinstance(given, (str, bytes, Mapping)) or not hasattr(given, "__iter__"):
@@ -105,8 +110,10 @@ def _read(name: str, declared: Declared, item: Any, where: str) -> Any:
         raise error.renamed(f"{where} ({error.field})" if error.field != full_name(name) else where) from error
 
 
-def _range(name: str, declared: Declared, given: Mapping[str, Any]) -> Sequence[Any]:
+def _range(name: str, declared: Declared, given: Mapping[str, Any]) -> list[Any]:
     points = given.get("points")
+    if isinstance(points, int) and points > MOST:
+        raise SpecError(f"over.{name}.points", points, f"must be at most {MOST:,}")
     if set(given) != _RANGE or not isinstance(points, int) or isinstance(points, bool) or points < 2:
         said = "must give from, to and points (a whole number, at least 2)"
         raise SpecError(f"over.{name}", dict(given), said, 'such as { from = "30 deg", to = "50 deg", points = 21 }')
@@ -117,8 +124,7 @@ def _range(name: str, declared: Declared, given: Mapping[str, Any]) -> Sequence[
     if np.isnan(first + last):
         raise SpecError(f"over.{name}", dict(given), "must go from one number to another")
     values: list[float] = np.linspace(first, last, points).tolist()
-    unit = "" if declared.unit in ("", "1") else declared.unit  # the ends were read: what lies between is not doubted
-    return [f"{value!r} {unit}" for value in values] if unit else values
+    return values
 
 
 def _checked(muscle: Muscle, found: list[Varied]) -> tuple[Varied, ...]:
@@ -187,14 +193,15 @@ def _csv(path: str | PathLike[str]) -> list[tuple[str, list[Any]]]:
     name = fspath(path)
     try:
         with open(path, encoding="utf-8-sig", newline="") as stream:
-            rows = [row for row in csv.reader(stream) if any(cell.strip() for cell in row)]
+            lines = [line for line in stream if not line.lstrip().startswith("#")]
+        separator = ";" if ";" in next(filter(str.strip, lines), "") else ","  # spreadsheets where "," is decimal
+        rows = [row for row in csv.reader(lines, delimiter=separator) if any(cell.strip() for cell in row)]
     except FileNotFoundError as error:
         raise SpecError(name, allowed="there is no such file") from error
     except OSError as error:
         raise SpecError(name, allowed=f"cannot be read: {error.strerror or error}") from error
     except (UnicodeDecodeError, csv.Error, ValueError) as error:
         raise SpecError(name, allowed="is no CSV table", advice="save it as CSV in UTF-8, with commas") from error
-    rows = [row for row in rows if not row[0].lstrip().startswith("#")]
     if not rows:
         raise SpecError(name, allowed="is empty", advice='the first line names the fields: "braid.angle [deg],ends"')
     for k, row in enumerate(rows[1:]):
