@@ -30,6 +30,10 @@ REPRODUCE = examples(
 PICTURES = {".png": "picture", ".pdf": "print", ".svg": "web"}
 
 
+PIXELS = 1200
+"""Least width of a picture in pixels, for slides and screens."""
+
+
 class Kind(StrEnum):
     """What to draw."""
 
@@ -45,7 +49,7 @@ def plot(
     file: Annotated[Path, typer.Argument(metavar="FILE.nc", help="a result saved by mckibben run -o FILE.nc")],
     output: Annotated[
         Path | None,
-        typer.Option("--output", "-o", metavar="PICTURE", help="the picture: .png, .pdf or .svg [default: FILE.png]"),
+        typer.Option("--output", "-o", metavar="PICTURE", help=r"the picture: .png, .pdf or .svg \[default: FILE.png]"),
     ] = None,
     kind: Annotated[
         Kind, typer.Option(help="auto: the curve of the test; profiles: radius and angle along the muscle")
@@ -63,7 +67,7 @@ def plot(
     figure = _figure(result, kind)
     from mckibben.view import style
 
-    disk.write(target, style.picture(figure, suffix[1:]), force)
+    disk.write(target, style.picture(figure, suffix[1:], PIXELS), force)
     say(f"drawn: {target}")
 
 

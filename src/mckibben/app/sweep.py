@@ -24,19 +24,19 @@ EPILOG = examples(
 
 @command
 def sweep(
-    file: Annotated[Path, typer.Argument(metavar="SWEEP.toml", help="a case file with a [sweep] table")],
+    file: Annotated[Path, typer.Argument(metavar="SWEEP.toml", help=r"a case file with a \[sweep] table")],
     overrides: Annotated[
         list[str] | None,
         typer.Option("--set", metavar="NAME=VALUE", help='change a value of the base, such as braid.angle="36 deg"'),
     ] = None,
     output: Annotated[
         Path | None,
-        typer.Option("--output", "-o", metavar="STORE.zarr", help="where the results go [default: SWEEP.zarr]"),
+        typer.Option("--output", "-o", metavar="STORE.zarr", help=r"where the results go \[default: SWEEP.zarr]"),
     ] = None,
     force: Annotated[bool, typer.Option("--force", help="delete another sweep that is there")] = False,
     workers: Annotated[
         int | None,
-        typer.Option(min=0, help="processes on this machine, 0 for this one alone [default: one per core]"),
+        typer.Option(min=0, help=r"processes on this machine, 0 for this one alone \[default: one per core]"),
     ] = None,
     scheduler: Annotated[
         str | None, typer.Option(metavar="ADDRESS", help="a Dask scheduler that is running, such as tcp://head:8786")

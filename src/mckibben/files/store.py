@@ -14,7 +14,7 @@ if TYPE_CHECKING:
 
 __all__ = ["SUFFIXES", "check_output", "load_result", "save", "suffix_of"]
 
-SUFFIXES = {".nc": "everything, to be loaded again (NetCDF-4)", ".csv": "the table of states"}
+SUFFIXES = {".nc": "everything, to be loaded again (NetCDF-4)", ".csv": "the table of states, with notes beside it"}
 
 
 def suffix_of(path: str | PathLike[str], allowed: dict[str, str] = SUFFIXES) -> str:
@@ -28,12 +28,19 @@ def suffix_of(path: str | PathLike[str], allowed: dict[str, str] = SUFFIXES) -> 
 
 def check_output(path: str | PathLike[str], force: bool = False) -> None:
     """SpecError if `save` to `path` would fail for its name, its folder or a file that is there already."""
-    suffix_of(path)
+    suffix = suffix_of(path)
     disk.check_target(path, force)
+    if suffix == ".csv":
+        from mckibben.files import table
+
+        disk.check_target(table.notes_file(path), force)
 
 
 def save(result: Any, path: str | PathLike[str], force: bool = False) -> Path:
     """Save a result: `.nc` keeps everything and can be loaded again, `.csv` is the table of states.
+
+    A table holds nothing but its head and its rows; what was computed and by what is in a text file beside it
+    ("out.csv.txt").
 
     Args:
         result: what `run` or `solve` gave. Of a `State` its `result` is saved, and that is what `load` gives.

@@ -9,8 +9,10 @@ from matplotlib.figure import Figure
 
 from mckibben.results.result import Result, State
 from mckibben.results.sensitivity import Sensitivity
+from mckibben.spec import BlockedForce, FreeContraction, Path, Protocol
 from mckibben.spec.errors import SpecError, nearest
-from mckibben.view import curves, maps
+from mckibben.units import show
+from mckibben.view import curves, maps, style
 from mckibben.view.tornado import tornado
 
 __all__ = ["KINDS", "plot"]
@@ -59,13 +61,39 @@ def plot(result: Any, kind: str = "auto") -> Figure:
     if not isinstance(kind, str) or kind not in KINDS:
         raise SpecError("plot.kind", kind, "is unknown", nearest(str(kind), KINDS))
     if isinstance(result, Result):
-        return KINDS[kind](result)
+        return _headed(KINDS[kind](result), result)
     if isinstance(result, State):
-        return KINDS["profiles" if kind == "auto" else kind](result.result)
+        return _headed(KINDS["profiles" if kind == "auto" else kind](result.result), result.result)
     draw = tornado if isinstance(result, Sensitivity) else _of_dataset(result)
     if kind != "auto":
         raise SpecError("plot.kind", kind, "is for a result or a state", "leave it out")
     return draw(result)
+
+
+def _headed(figure: Figure, result: Result) -> Figure:
+    """The figure with a line that names the muscle, the test and what is held."""
+    test = result.test
+    held = _held(test)
+    if isinstance(test, Protocol):
+        steps = (", ".join(f"{name} {path}" for name, path in _paths(step).items()) for step in test.steps)
+        held = "; ".join(f"{k} {said}" for k, said in enumerate(steps, 1))
+    if isinstance(test, BlockedForce) and test.length is None:
+        held = f"length {show(result.muscle.braid.length, 'm')}"
+    if isinstance(test, FreeContraction):
+        held = "force 0 N"
+    name = f'Muscle "{result.muscle.name}"' if result.muscle.name else "Muscle without a name"
+    style.heading(figure, f"{name}: {test.kind} test" + (f", {held}" if held else ""))
+    return figure
+
+
+def _paths(test: Any) -> dict[str, Path]:
+    """What a test controls, by name."""
+    paths = ((name, getattr(test, name, None)) for name in ("length", "contraction", "force", "pressure", "volume"))
+    return {name: path for name, path in paths if path is not None}
+
+
+def _held(test: Any) -> str:
+    return ", ".join(f"{name} {path}" for name, path in _paths(test).items() if not path.varies)
 
 
 def _of_dataset(data: Any) -> Callable[[Any], Figure]:
