@@ -1,18 +1,24 @@
 """What people look for in tables, files, pictures and help."""
 
+import json
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pandas as pd
 import pytest
+import xarray as xr
 from matplotlib.image import imread
 from results import made
+from texts import CASE
 from typer.testing import CliRunner
 
 import mckibben as mk
 from mckibben.app.cli import app
 from mckibben.app.states import as_json, show
+from mckibben.experiments import limits
 from mckibben.files.table import rows
+from mckibben.spec.text import to_toml
 
 PAPER = mk.presets.paper()
 STRONG = PAPER.replace("braid.fibre.breaking_force", "20 N")
@@ -83,3 +89,89 @@ def test_help_keeps_its_brackets() -> None:
     for words in ("[sweep]", "[default: SWEEP.zarr]", "[default: one per core]"):
         assert words in told
     assert "[default: FILE.png]" in runner.invoke(app, ["plot", "--help"], env={"COLUMNS": "200"}).stdout
+
+
+@pytest.fixture
+def case(tmp_path: Path) -> Path:
+    path = tmp_path / "case.toml"
+    path.write_text(CASE, encoding="utf-8")
+    return path
+
+
+def told(*words: object, code: int = 0) -> dict[str, Any]:
+    """What a command prints as JSON."""
+    done = CliRunner().invoke(app, [*map(str, words), "--json"])
+    assert done.exit_code == code, done.output
+    found: dict[str, Any] = json.loads(done.stdout)
+    return found
+
+
+def test_json_of_check_presets_and_info(case: Path, tmp_path: Path) -> None:
+    found = told("check", case)
+    assert found["valid"] is True
+    assert found["muscle"]["braid"]["radius"] == 0.0125
+    assert "contracts under pressure" in found["braid"]
+    assert found["derived"]["full extension"].endswith(" mm")
+    assert [row["name"] for row in told("presets")["presets"]] == list(mk.presets.names())
+    assert told("presets", "paper")["sources"] == mk.presets.sources("paper")
+    assert told("info")["mckibben"]
+    mk.save(made(PAPER, CURVE, reached=3), tmp_path / "out.nc")
+    assert told("info", tmp_path / "out.nc")["verdicts"] == "3 stable"
+
+
+def test_errors_are_json_too(case: Path) -> None:
+    for command in ("check", "run"):
+        error = told(command, case, "--set", "braid.angle=95 deg", code=2)["error"]
+        assert (error["field"], error["value"]) == ("braid.angle", "95 deg")
+        assert error["allowed"] == "must be above 0 deg and below 90 deg"
+        assert error["message"].startswith("braid.angle = 95 deg: ")
+    assert told("presets", "papr", code=2)["error"]["advice"] == 'did you mean "paper"?'
+
+
+REGION = xr.Dataset(
+    {"shortest": ("pressure", [0.03, 0.031], {"units": "m"}), "longest": ("pressure", [0.12, 0.12], {"units": "m"}),
+     "stable_down_to": ("pressure", [0.03, 0.03], {"units": "m"}), "shortest_cause": ("pressure", ["it folds", ""])},
+    {"pressure": ("pressure", [1e5, 2e5], {"units": "Pa"})},
+    {"muscle": to_toml(PAPER)},
+)  # fmt: skip
+
+
+def test_what_a_muscle_can_do_from_the_command_line(
+    case: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    asked: list[list[str]] = []
+    monkeypatch.setattr(limits, "working_range", lambda _, pressures: asked.append(pressures) or REGION)
+    words = ["working-range", str(case), "--pressure", "1 to 2 bar", "--points", "2"]
+    found = told(*words, "-o", tmp_path / "range.csv")
+    assert asked == [["100000.0 Pa", "200000.0 Pa"]]
+    assert found["rows"][0] == {
+        "pressure": 1e5, "shortest": 0.03, "longest": 0.12, "stable_down_to": 0.03, "shortest_cause": "it folds",
+    }  # fmt: skip
+    assert pd.read_csv(tmp_path / "range.csv")["shortest [m]"].tolist() == [0.03, 0.031]
+    done = CliRunner().invoke(app, [*words, "-o", str(tmp_path / "range.png")])
+    assert done.exit_code == 0
+    assert "31" in done.stdout
+    assert imread(tmp_path / "range.png").shape[1] >= 1200
+    only = limits.Limits(1e5, 0.03, -70.0, "it folds", 0.03, -70.0, 0.12, -71.0, np.nan)
+    monkeypatch.setattr(limits, "limits", lambda *_, **__: only)
+    found = told("limits", case, "--pressure", "1 bar")
+    assert (found["shortest"], found["force_extremum_length"]) == (0.03, None)
+
+
+def test_a_force_map_from_the_command_line(case: Path, tmp_path: Path) -> None:
+    words = ["force-map", case, "--length", "130 mm to 131 mm", "--pressure", "1 to 2 bar", "--points", "2"]
+    found = told(*words, "-o", tmp_path / "map.csv", code=3)
+    assert found["complete"] is False
+    assert {row["verdict"] for row in found["rows"]} == {"no equilibrium"}
+    assert len(pd.read_csv(tmp_path / "map.csv")) == 4
+    assert told(*words, "-o", tmp_path / "map.csv", code=2)["error"]["allowed"] == "exists"
+
+
+def test_several_pressures_in_one_command(case: Path, tmp_path: Path) -> None:
+    words = ["run", case, "--set", "test.length=130 mm", "--pressure", "1 bar", "--pressure", "0 to 2 bar", "-q"]
+    done = CliRunner().invoke(app, [*map(str, words), "-o", str(tmp_path / "out.csv")])
+    assert done.exit_code == 3
+    assert len(pd.read_csv(tmp_path / "out_1_bar.csv")) == 21  # the points of the case
+    assert len(pd.read_csv(tmp_path / "out_0_to_2_bar.csv")) == 21
+    again = CliRunner().invoke(app, [*map(str, words), "-o", str(tmp_path / "out.csv")])
+    assert again.exit_code == 2

@@ -16,6 +16,8 @@ import typer
 if TYPE_CHECKING:
     from rich.console import Console, JustifyMethod
 
+    from mckibben.spec.errors import SpecError
+
 __all__ = [
     "COMPLETE",
     "INCOMPLETE",
@@ -84,6 +86,16 @@ def show_json(value: dict[str, Any]) -> None:
     typer.echo(json.dumps(value, ensure_ascii=False, allow_nan=False))
 
 
+def _error(error: SpecError) -> dict[str, Any]:
+    """Wrong input for JSON: the parts of the error, and the whole of it as one line."""
+    from mckibben.spec.errors import MISSING
+
+    value = None if error.value is MISSING else error.value
+    plain = value if isinstance(value, (str, int, bool, type(None))) else str(value)
+    parts = {"field": error.field, "value": plain, "allowed": error.allowed, "advice": error.advice}
+    return {"message": str(error)} | parts
+
+
 def command(function: Callable[P, int | None]) -> Callable[P, None]:
     """Decorator of every command: turns errors into one line on stderr and an exit code, such as 2 for wrong input."""
 
@@ -96,6 +108,8 @@ def command(function: Callable[P, int | None]) -> Callable[P, None]:
             code = function(*args, **kwargs)
         except SpecError as error:
             complain(str(error))
+            if kwargs.get("as_json"):
+                show_json({"error": _error(error)})
             raise typer.Exit(INPUT) from error
         except SweepError as error:
             complain(str(error))

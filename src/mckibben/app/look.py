@@ -8,13 +8,14 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from mckibben.app.console import command, examples, say, table
+from mckibben.app.console import command, examples, say, show_json, table
 
 if TYPE_CHECKING:
     from mckibben.sweeps.sweepfile import SweepCase
 
 __all__ = ["CHECK", "INFO", "PRESETS", "check", "info", "presets"]
 
+AsJson = Annotated[bool, typer.Option("--json", help="print one JSON object and nothing else, errors included")]
 CHECK = examples("mckibben check case.toml", 'mckibben check case.toml --set braid.angle="36 deg"')
 PRESETS = examples("mckibben presets", "mckibben presets paper", "mckibben presets paper --toml > case.toml")
 INFO = examples("mckibben info", "mckibben info out.nc", "mckibben info out.zarr")
@@ -27,6 +28,7 @@ def check(
         list[str] | None,
         typer.Option("--set", metavar="NAME=VALUE", help='change a value of the case, such as braid.angle="36 deg"'),
     ] = None,
+    as_json: AsJson = False,
 ) -> None:
     """Check a case file and show the muscle and the test as understood, without solving.
 
@@ -40,6 +42,9 @@ def check(
     from mckibben.app import fields
     from mckibben.experiments import foresee
 
+    if as_json:
+        show_json(_as_json(asked))
+        return
     name = f' "{found.muscle.name}"' if found.muscle.name else ""
     columns = ("field", "value", "meaning", "source")
     rows = list(fields.muscle_rows(found.muscle))
@@ -71,6 +76,24 @@ def _narrow(value: str) -> str:
     return value.replace(" (", "\n(")
 
 
+def _as_json(asked: SweepCase) -> dict[str, Any]:
+    """What `check` understands, for JSON: the specification in SI units, and texts of what follows."""
+    from mckibben.experiments import foresee
+    from mckibben.spec.text import to_mapping
+
+    case = asked.case
+    swept = None if asked.over is None and asked.designs is None else dict(_swept(asked))
+    return {
+        "valid": True,
+        **to_mapping(case, allow_custom=True),
+        "assumed": list(case.muscle.assumed),
+        "braid": foresee.turns(case.muscle),
+        "derived": {name: value for name, value, _ in foresee.derived(case.muscle)},
+        "sweep": swept,
+        "notes": list(foresee.beyond(case.muscle, case.test)),
+    }
+
+
 def _swept(asked: SweepCase) -> list[tuple[str, str]]:
     from mckibben.sweeps.plan import plan
 
@@ -84,6 +107,7 @@ def _swept(asked: SweepCase) -> list[tuple[str, str]]:
 def presets(
     name: Annotated[str | None, typer.Argument(metavar="[NAME]", help="one preset; all are listed without it")] = None,
     toml: Annotated[bool, typer.Option("--toml", help="print a case file with the preset, ready to run")] = False,
+    as_json: AsJson = False,
 ) -> None:
     """List the named muscles, or show one: each value with its source or marked as assumed."""
     from mckibben.spec import presets as known
@@ -93,13 +117,21 @@ def presets(
         if toml:
             raise SpecError("--toml", allowed="needs the name of a preset", advice="one of " + ", ".join(known.names()))
         lines = [(key, (getattr(known, key).__doc__ or "").split("\n")[0]) for key in known.names()]
-        say(table(("preset", "what it is"), lines))
+        if as_json:
+            show_json({"presets": [{"name": key, "about": about} for key, about in lines]})
+        else:
+            say(table(("preset", "what it is"), lines))
         return
     from mckibben.app import fields
 
     muscle = known.get(name)
     if toml:
         typer.echo(fields.case_text(name), nl=False)
+        return
+    if as_json:
+        from mckibben.spec.text import to_mapping
+
+        show_json({"name": name, "muscle": to_mapping(muscle), "sources": known.sources(name)})
         return
     rows = [(field, _narrow(value), source) for field, value, _, source in fields.muscle_rows(muscle)]
     say(table(("field", "value", "source"), rows, title=f'Muscle "{name}"', whole=(0, 1)))
@@ -108,10 +140,18 @@ def presets(
 @command
 def info(
     file: Annotated[Path | None, typer.Argument(metavar="[FILE]", help="a saved result (.nc) or sweep (.zarr)")] = None,
+    as_json: AsJson = False,
 ) -> None:
     """Show the versions and the machine, or with a file what it holds."""
     look = _sweep if file is not None and file.suffix.lower() == ".zarr" else _content
-    say(table(("", ""), _installation() if file is None else look(file)))
+    rows = _installation() if file is None else look(file)
+    if as_json:
+        found: dict[str, Any] = {}
+        for name, value in rows:
+            found.setdefault(name, []).append(value)
+        show_json({name: values[0] if len(values) == 1 else values for name, values in found.items()})
+    else:
+        say(table(("", ""), rows))
 
 
 def _installation() -> list[tuple[str, str]]:

@@ -7,7 +7,7 @@ import io
 from collections.abc import Iterable, Iterator
 from os import PathLike, fspath
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -16,7 +16,10 @@ from mckibben.results.result import Result
 from mckibben.results.sensitivity import Sensitivity
 from mckibben.results.variables import EXTREMES, STEP
 
-__all__ = ["COLUMNS", "notes_file", "rows", "save_csv", "save_sensitivity"]
+__all__ = ["COLUMNS", "map_csv", "map_rows", "notes_file", "rows", "save_csv", "save_sensitivity"]
+
+if TYPE_CHECKING:
+    from xarray import Dataset
 
 COLUMNS = STEP | EXTREMES
 """Variables of a table: unit and meaning."""
@@ -71,6 +74,25 @@ def rows(result: Result) -> Iterator[dict[str, Any]]:
     for state in range(len(result)):
         values = {name: column[state] for name, column in columns.items()}
         yield {name: None if value != value else value for name, value in values.items()}
+
+
+def map_rows(data: Dataset, units: bool = True) -> list[dict[str, Any]]:
+    """The points of a force map or a working range as plain values in SI, None for NaN; with `units` in their names."""
+    frame = data.to_dataframe().reset_index()
+    if units:
+        known = {str(name): str(item.attrs.get("units", "")) for name, item in data.variables.items()}
+        frame = frame.rename(columns={name: _header(name, known.get(name, "")) for name in frame.columns})
+    records: list[dict[str, Any]] = frame.to_dict("records")
+    return [{name: None if value != value else value for name, value in row.items()} for row in records]
+
+
+def map_csv(data: Dataset) -> str:
+    """A force map or a working range as a CSV table in SI units."""
+    text, records = io.StringIO(newline=""), map_rows(data)
+    writer = csv.writer(text, lineterminator="\n")
+    writer.writerow(records[0])
+    writer.writerows([_cell(value) for value in row.values()] for row in records)
+    return text.getvalue()
 
 
 def _extremes(result: Result) -> dict[str, list[float]]:
