@@ -175,3 +175,41 @@ def test_several_pressures_in_one_command(case: Path, tmp_path: Path) -> None:
     assert len(pd.read_csv(tmp_path / "out_0_to_2_bar.csv")) == 21
     again = CliRunner().invoke(app, [*map(str, words), "-o", str(tmp_path / "out.csv")])
     assert again.exit_code == 2
+
+
+def test_a_family_of_curves_in_one_picture() -> None:
+    results = {name: made(PAPER, CURVE, reached=3) for name in ("thin", "thick")}
+    axes = mk.plot(results).axes[0]
+    assert [text.get_text() for text in axes.get_legend().get_texts()] == ["thin", "thick"]
+    assert axes.get_xlabel() == "Pressure (bar)"
+    other = made(PAPER, mk.FreeContraction(pressure="0 to 1 bar", points=3), reached=3)
+    with pytest.raises(mk.SpecError, match="tests of several kinds"):
+        mk.plot(results | {"free": other})
+    with pytest.raises(mk.SpecError, match="must hold results of run"):
+        mk.plot({"thin": 3})
+
+
+def test_the_textbook_formula_by_its_public_name() -> None:
+    """Zero at the magic angle, NaN where the fibres do not reach."""
+    magic = PAPER.braid.length / np.sin(PAPER.braid.angle) / np.sqrt(3.0)
+    forces = mk.textbook_force(PAPER, length=[magic, 0.085, 0.15], pressure="1 bar")
+    assert abs(forces[0]) < 1e-9
+    theta, R0 = PAPER.braid.angle, PAPER.braid.radius
+    assert forces[1] == pytest.approx(np.pi * R0**2 / np.cos(theta) ** 2 * (3.0 * np.sin(theta) ** 2 - 1.0) * 1e5)
+    assert np.isnan(forces[2])
+    with pytest.raises(mk.SpecError, match=r"textbook_force\.length = 85: needs a unit"):
+        mk.textbook_force(PAPER, length="85", pressure="1 bar")
+
+
+def test_examples_and_recipes_use_public_names_only() -> None:
+    root = Path(__file__).parent.parent
+    for page in (*(root / "examples").glob("*.py"), root / "docs" / "howto.md", root / "README.md"):
+        assert "from mckibben." not in page.read_text(encoding="utf-8"), page
+
+
+def test_the_theory_reads_without_a_network() -> None:
+    """MathJax is among the pages, with its licence."""
+    docs = Path(__file__).parent.parent / "docs"
+    assert 'mathjax_path = "mathjax/tex-svg-full.js"' in (docs / "conf.py").read_text(encoding="utf-8")
+    assert (docs / "_static" / "mathjax" / "tex-svg-full.js").stat().st_size > 1_000_000
+    assert "Apache License" in (docs / "_static" / "mathjax" / "LICENSE").read_text(encoding="utf-8")

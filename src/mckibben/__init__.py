@@ -17,6 +17,7 @@ _PUBLIC = {
     "mckibben.sweeps.sweep": ("sweep",),
     "mckibben.sweeps.trouble": ("SweepError",),
     "mckibben.experiments.force_map": ("force_map",),
+    "mckibben.experiments.textbook": ("textbook_force",),
     "mckibben.experiments.response": ("response",),
     "mckibben.experiments.sensitivity": ("sensitivity",),
     "mckibben.results.sensitivity": ("Sensitivity",),

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from typing import Any
 
 import numpy as np
@@ -71,6 +71,21 @@ def plot(result: Result) -> Figure:
             _length_axis(axes, result)
         style.tidy(axes, "best" if axes.get_legend_handles_labels()[0] else None)
     notes(figure, result)
+    return figure
+
+
+def family(results: Mapping[str, Result]) -> Figure:
+    """Curves of several results of one kind of test in one picture, with their names in the legend."""
+    first = next(iter(results.values()))
+    figure = style.new_figure()
+    axes = figure.add_subplot()
+    y = "contraction" if first.test.kind in ("isotonic", "free-contraction") else "force"
+    x = driven(first)
+    for k, (name, result) in enumerate(results.items()):
+        line(axes, result, x, y, color=style.LINES[k % len(style.LINES)], label=name)
+    axes.set(xlabel="State" if x == "state" else label(x), ylabel=label(y))
+    style.tidy(axes, "best")
+    style.assumption_note(figure, first.muscle)
     return figure
 
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from typing import Any
 
 from matplotlib.figure import Figure
@@ -39,7 +39,8 @@ def plot(result: Any, kind: str = "auto") -> Figure:
     tornado chart.
 
     Args:
-        result: what one of these calls gave.
+        result: what one of these calls gave, or several results of one kind of test by their names, as
+            {"1 bar": first, "2 bar": second}: a family of curves.
         kind: of a result or a state, as on the command line: "auto" (as above), "profiles" (radius and angle along the
             muscle), "tension" (of one fibre along it), "energy" (the stored energies) or "shares" (of the axial load
             that mesh and chamber carry).
@@ -64,10 +65,25 @@ def plot(result: Any, kind: str = "auto") -> Figure:
         return _headed(KINDS[kind](result), result)
     if isinstance(result, State):
         return _headed(KINDS["profiles" if kind == "auto" else kind](result.result), result.result)
+    if isinstance(result, Mapping) and not hasattr(result, "data_vars"):
+        return _family(result, kind)
     draw = tornado if isinstance(result, Sensitivity) else _of_dataset(result)
     if kind != "auto":
         raise SpecError("plot.kind", kind, "is for a result or a state", "leave it out")
     return draw(result)
+
+
+def _family(results: Mapping[Any, Any], kind: str) -> Figure:
+    """Several results of one kind of test in one picture."""
+    if kind != "auto":
+        raise SpecError("plot.kind", kind, "is for one result", "leave it out")
+    wrong = [name for name, result in results.items() if not isinstance(result, Result)]
+    if wrong or not results:
+        raise SpecError("plot", wrong[0] if wrong else "{}", "must hold results of run by their names")
+    kinds = list(dict.fromkeys(result.test.kind for result in results.values()))
+    if len(kinds) > 1:
+        raise SpecError("plot", ", ".join(kinds), "are tests of several kinds", "draw those of one kind together")
+    return curves.family({str(name): result for name, result in results.items()})
 
 
 def _headed(figure: Figure, result: Result) -> Figure:
