@@ -73,6 +73,8 @@ def _factor(unit: str, wanted: str) -> float:
     if wanted == "1":
         if clean in ("", "dimensionless"):
             return 1.0
+        if clean == "%":
+            return 0.01
         raise UnitError("must be a plain number without a unit", f'leave out "{unit}"')
     if clean in _USUAL and wanted in _USUAL:
         kind, factor = _USUAL[clean]

@@ -127,8 +127,11 @@ def working_range(
 @command
 def force_map(
     case: Case,
-    length: Annotated[str, typer.Option(metavar="LENGTHS", help='such as "90 mm to 115 mm"')],
     pressure: Annotated[str, typer.Option(metavar="PRESSURES", help='such as "0 to 3 bar"')],
+    length: Annotated[str | None, typer.Option(metavar="LENGTHS", help='such as "90 mm to 115 mm"')] = None,
+    contraction: Annotated[
+        str | None, typer.Option(metavar="CONTRACTIONS", help='in place of the lengths, such as "0 to 25 %"')
+    ] = None,
     points: Annotated[int | None, typer.Option(help="number of lengths and of pressures; 21 by default")] = None,
     tolerance: Annotated[float, typer.Option(help="relative error aimed at, from 1e-10 to 1e-2")] = 1e-6,
     overrides: Overrides = None,
@@ -148,7 +151,9 @@ def force_map(
     with solving("force map", hidden=quiet or as_json):
         from mckibben.experiments.force_map import force_map as experiment
 
-        data = experiment(muscle, length=length, pressure=pressure, points=points, tolerance=tolerance)
+        data = experiment(
+            muscle, length=length, contraction=contraction, pressure=pressure, points=points, tolerance=tolerance
+        )
     return _tell(data, "force", output, suffix, force, as_json, quiet)
 
 

@@ -151,12 +151,13 @@ def _force_extremum(bench: Bench, pressure: float, end: BranchEnd) -> tuple[floa
     return found.force, at
 
 
-def least_pressure(muscle: Muscle, *, length: Any, shapes: bool = True) -> float:
+def least_pressure(muscle: Muscle, *, length: Any = None, contraction: Any = None, shapes: bool = True) -> float:
     """Least gauge pressure [Pa], zero or above, at which a muscle is stable and admissible at a length.
 
     Args:
         muscle: the specification.
         length: distance between the fittings [m], a number or text with a unit.
+        contraction: in place of the length: 1 - h/H0, such as "10 %" or 0.1.
         shapes: False if only stability counts, and the wall may lie behind its fitting.
 
     Returns:
@@ -172,7 +173,8 @@ def least_pressure(muscle: Muscle, *, length: Any, shapes: bool = True) -> float
     >>> none, none.reason
     (nan, 'no equilibrium: the fibres are straight at 128.7786 mm, the longest possible length')
     """
-    h, bench = _value("length", length), Bench.of(muscle)
+    (step,) = Step(length=length, contraction=contraction, force=0.0).as_steps(muscle)  # type: ignore[call-arg]
+    h, bench = _value("length", step.length), Bench.of(muscle)
     found = float("nan") if h >= bench.longest else holding(bench, h, 0.0, shapes=shapes)
     if found == found:
         return Pressure(found)

@@ -32,6 +32,7 @@ def solve(
     muscle: Muscle,
     *,
     length: Any = None,
+    contraction: Any = None,
     force: Any = None,
     pressure: Any = None,
     volume: Any = None,
@@ -45,6 +46,7 @@ def solve(
     Args:
         muscle: the specification.
         length: distance between the fittings [m].
+        contraction: in place of the length: 1 - h/H0, such as "10 %" or 0.1.
         force: axial force [N], positive in tension.
         pressure: gauge pressure [Pa].
         volume: volume inside the braid [m^3].
@@ -65,7 +67,8 @@ def solve(
     >>> mk.solve(mk.presets.paper(), length="130 mm", pressure="1 bar").reason
     'no equilibrium: the fibres are straight at 128.7786 mm, the longest possible length'
     """
-    step = Step(length=length, force=force, pressure=pressure, volume=volume, points=1)
+    given = Step(length=length, contraction=contraction, force=force, pressure=pressure, volume=volume, points=1)  # type: ignore[call-arg]
+    (step,) = given.as_steps(muscle)
     for name in step.controls:
         if getattr(step, name).needs_present:
             raise SpecError(f"solve.{name}", str(getattr(step, name)), "must be one value", "a path needs run()")

@@ -9,6 +9,8 @@ from collections.abc import Iterable, Mapping
 from typing import Any
 
 from mckibben.spec.angle import anew
+from mckibben.spec.contraction import DECLARED as CONTRACTION
+from mckibben.spec.contraction import takes_it
 from mckibben.spec.declared import describe, evolved, walk
 from mckibben.spec.errors import SpecError, nearest
 
@@ -39,6 +41,8 @@ def changed_muscle(muscle: Any, values: Mapping[str, Any]) -> Any:
 def changed(owner: Any, values: Mapping[str, Any], prefix: str = "") -> Any:
     """A copy of a spec object, or a tuple of them, with `values` put in at once, inner ones first."""
     new, inner = _grouped(values)
+    if "contraction" in new and takes_it(owner):
+        new["length"] = CONTRACTION.read(new.pop("contraction"), f"{prefix}contraction", CONTRACTION)
     if isinstance(owner, tuple):
         return tuple(changed(part, inner.get(str(k), {}), f"{prefix}{k}.") for k, part in enumerate(owner))
     known = {item.name: item.kind for item in describe(type(owner))}

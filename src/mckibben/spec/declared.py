@@ -160,6 +160,9 @@ def numbers(value: Any, prefix: str = "") -> Iterator[tuple[str, Declared, Numbe
         elif declared.kind in ("quantities", "path", "held"):
             several = item if declared.kind == "quantities" else item.waypoints
             single = declared.kind != "quantities" and len(several) == 1
+            if declared.kind != "quantities" and item.called(declared.name) != declared.name:
+                name = f"{prefix}{item.called(declared.name)}"
+                declared = attrs.evolve(declared, unit=item.unit, display="", meaning="contraction 1 - h/H0")
             for index, number in enumerate(several):
                 yield name if single else f"{name}[{index}]", declared, number
 

@@ -12,7 +12,8 @@ from typing import Any, ClassVar
 import attrs
 import numpy as np
 
-from mckibben.spec.declared import Declared, Reads, declare
+from mckibben.spec.contraction import lengths, takes_contraction
+from mckibben.spec.declared import Declared, Reads, declare, evolved
 from mckibben.spec.errors import SpecError
 from mckibben.spec.fields import choice, count, spec
 from mckibben.spec.muscle import Muscle
@@ -40,13 +41,14 @@ HIGHEST = 1e9
 
 def _read_path(value: Any, field: str, declared: Declared) -> Path:
     try:
-        path = Path.parse(value, declared.unit)
+        as_contraction = isinstance(value, Path) and value.unit == "1" and declared.unit == "m"
+        path = value if as_contraction else Path.parse(value, declared.unit)
     except UnitError as error:
         raise SpecError(field, value, str(error), error.advice) from error
     given = () if isinstance(value, Path) else value if isinstance(value, (list, tuple, np.ndarray)) else (value,)
     meant = reading(list(given), declared.unit, declared.doubt)
     for waypoint in path.waypoints:
-        if not is_traced(waypoint) and not declared.contains(waypoint):
+        if not is_traced(waypoint) and not as_contraction and not declared.contains(waypoint):
             raise SpecError(field, value, f"must be {declared.allowed}", meant or declared.advice)
     if meant:
         raise SpecError(field, value, "a number without a unit is in SI", meant)
@@ -121,6 +123,7 @@ class Along(StrEnum):
     BRANCH = "branch"
 
 
+@takes_contraction
 @spec("step")
 class Step:
     """Part of a test with any two of length, force, pressure and volume controlled, or length or force and the gas.
@@ -130,7 +133,7 @@ class Step:
     value ("to 20 N") or at it ("hold").
 
     Args:
-        length: distance between the fittings [m], above 0.
+        length: distance between the fittings [m], above 0; or contraction="10 %" in its place, 1 - h/H0.
         force: axial force [N], positive where the muscle pulls its fittings together.
         pressure: gauge pressure [Pa], not below minus one atmosphere (-101325 Pa) nor above 10,000 bar.
         volume: volume inside the braid [m^3], above 0.
@@ -177,9 +180,17 @@ class Step:
         return tuple(name for name in _QUANTITIES if getattr(self, name) is not None)
 
     def as_steps(self, muscle: Muscle) -> tuple[Step, ...]:
-        return (self,)
+        return (_in_lengths(self, muscle),)
 
 
+def _in_lengths(step: Step, muscle: Muscle) -> Step:
+    """A step with lengths in place of contractions, as they are for a muscle."""
+    if step.length is None or step.length.unit == "m":
+        return step
+    return evolved(step, length=lengths(step.length, muscle.braid.length))
+
+
+@takes_contraction
 @spec("isometric")
 class Isometric:
     """Length held, pressure varied.
@@ -187,7 +198,7 @@ class Isometric:
     The paper's tests a and b (section III). It gives the force; pressures are visited in the order given.
 
     Args:
-        length: distance between the fittings [m], one value.
+        length: distance between the fittings [m], one value; or contraction="10 %" in its place, 1 - h/H0.
         pressure: gauge pressure [Pa]: a ramp such as "0 to 1 bar", a list, or one value.
         points: number of states; by default 21 on a ramp, as many as a list has, 1 for one value.
 
@@ -208,9 +219,10 @@ class Isometric:
         _settle_points(self)
 
     def as_steps(self, muscle: Muscle) -> tuple[Step, ...]:
-        return (Step(length=self.length, pressure=self.pressure, points=self.points),)
+        return (_in_lengths(Step(length=self.length, pressure=self.pressure, points=self.points), muscle),)
 
 
+@takes_contraction
 @spec("isobaric")
 class Isobaric:
     """Pressure held, length varied.
@@ -219,7 +231,8 @@ class Isobaric:
 
     Args:
         pressure: gauge pressure [Pa], one value.
-        length: distance between the fittings [m]: a ramp such as "115 mm to 60 mm", a list, or one value.
+        length: distance between the fittings [m]: a ramp such as "115 mm to 60 mm", a list, or one value; or in its
+            place contraction="0 to 25 %", 1 - h/H0.
         points: number of states; by default 21 on a ramp, as many as a list has, 1 for one value.
 
     Raises:
@@ -239,7 +252,7 @@ class Isobaric:
         _settle_points(self)
 
     def as_steps(self, muscle: Muscle) -> tuple[Step, ...]:
-        return (Step(length=self.length, pressure=self.pressure, points=self.points),)
+        return (_in_lengths(Step(length=self.length, pressure=self.pressure, points=self.points), muscle),)
 
 
 @spec("isotonic")
@@ -273,13 +286,15 @@ class Isotonic:
         return (Step(force=self.force, pressure=self.pressure, points=self.points),)
 
 
+@takes_contraction
 @spec("blocked-force")
 class BlockedForce:
     """Length held at the braid's own (or another), pressure varied: the most the muscle can pull.
 
     Args:
         pressure: gauge pressure [Pa]: a ramp such as "0 to 1 bar", a list, or one value.
-        length: distance between the fittings [m], one value; by default the length H0 of the braid as made.
+        length: distance between the fittings [m], one value; by default the length H0 of the braid as made. Or
+            contraction="10 %" in its place, 1 - h/H0.
         points: number of states; by default 21 on a ramp, as many as a list has, 1 for one value.
 
     Raises:
@@ -300,7 +315,7 @@ class BlockedForce:
 
     def as_steps(self, muscle: Muscle) -> tuple[Step, ...]:
         length = Path((muscle.braid.length,), unit="m") if self.length is None else self.length
-        return (Step(length=length, pressure=self.pressure, points=self.points),)
+        return (_in_lengths(Step(length=length, pressure=self.pressure, points=self.points), muscle),)
 
 
 @spec("free-contraction")
@@ -362,7 +377,7 @@ class Protocol:
     )
 
     def as_steps(self, muscle: Muscle) -> tuple[Step, ...]:
-        return self.steps
+        return tuple(_in_lengths(step, muscle) for step in self.steps)
 
 
 Test = Isometric | Isobaric | Isotonic | BlockedForce | FreeContraction | Protocol | Step

@@ -129,15 +129,21 @@ class Path:
         if self.mode == PathMode.HOLD:
             return "hold"
         lead = "to " if self.mode == PathMode.RAMP_FROM_PRESENT else ""
-        return lead + " to ".join(f"{number!r} {self.unit}" for number in numbers)
+        unit = "" if self.unit == "1" else f" {self.unit}"
+        return lead + " to ".join(f"{number!r}{unit}" for number in numbers)
 
     def __str__(self) -> str:
         if self.mode == PathMode.HOLD:
             return "hold"
-        texts = [show(value, self.unit, digits=12) for value in self.waypoints]
+        percent = self.unit == "1" and not any(is_traced(value) for value in self.waypoints)
+        texts = [f"{100.0 * x:.12g} %" if percent else show(x, self.unit, digits=12) for x in self.waypoints]
         if self.mode == PathMode.LIST:
             return ", ".join(texts)
         return ("to " if self.mode == PathMode.RAMP_FROM_PRESENT else "") + " to ".join(texts)
+
+    def called(self, field: str) -> str:
+        """What the field of this path is called by who gave it: a length without a unit is a contraction."""
+        return "contraction" if field == "length" and self.unit == "1" else field
 
     def __repr__(self) -> str:
         return f"Path({str(self)!r})"

@@ -14,6 +14,8 @@ import attrs
 import tomli_w
 
 from mckibben.spec import presets
+from mckibben.spec.contraction import DECLARED as CONTRACTION
+from mckibben.spec.contraction import takes_it
 from mckibben.spec.declared import Declared, describe, in_own_words
 from mckibben.spec.errors import MISSING, SpecError, nearest
 from mckibben.spec.laws import LAWS, CustomLaw
@@ -122,8 +124,11 @@ def _build(cls: type, mapping: Any, field: str, file_path: str) -> Any:
     """An object of a spec class from its table. `field` is its name in errors, as `Muscle.replace` takes it."""
     table = _table(mapping, field, file_path)
     declared = {item.name: item for item in describe(cls)}
+    if takes_it(cls):
+        declared["contraction"] = CONTRACTION
     _known(table, tuple(declared), file_path)
-    missing = [name for name, item in declared.items() if item.required and name not in table]
+    instead = {"length"} if "contraction" in table else {"contraction"}
+    missing = [name for name, item in declared.items() if item.required and name not in {*table, *instead}]
     if missing:
         said = f"is missing: {declared[missing[0]].meaning}"
         raise SpecError(f"{field}.{missing[0]}", allowed=said, advice=f"add it to [{file_path}]")
@@ -198,7 +203,8 @@ def _written(value: Any, allow_custom: bool) -> dict[str, Any]:
         held = own.get(item.name)
         if held is None or (item.kind == "names" and not held):
             continue
-        table[item.name] = _plain(item, held, allow_custom)
+        name = held.called(item.name) if isinstance(held, Path) else item.name
+        table[name] = _plain(item, held, allow_custom)
     return table
 
 

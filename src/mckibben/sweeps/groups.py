@@ -98,6 +98,13 @@ def _group(muscle: Muscle, test: Test, values: dict[str, np.ndarray], index: np.
     """Designs like one, with some numbers (designs, how many) anew; those that are not certainly valid are left out."""
     if isinstance(test, BlockedForce) and test.length is None and "braid.length" in values:
         return None  # the length held is the braid's own
+    relative = any(
+        step.length is not None and step.length.unit != "m"
+        for step in getattr(test, "steps", (test,))
+        if hasattr(step, "length")
+    )
+    if "test.contraction" in values or (relative and "braid.length" in values):
+        return None  # so it is here
     steps = test.as_steps(muscle)
     step, held = steps[0], tuple(str(name) for name in steps[0].controls)
     if len(steps) > 1 or step.gas is not None or step.along != Along.VALUES or held[1:] != ("pressure",):

@@ -104,8 +104,8 @@ def _headed(figure: Figure, result: Result) -> Figure:
 
 def _paths(test: Any) -> dict[str, Path]:
     """What a test controls, by name."""
-    paths = ((name, getattr(test, name, None)) for name in ("length", "contraction", "force", "pressure", "volume"))
-    return {name: path for name, path in paths if path is not None}
+    paths = ((name, getattr(test, name, None)) for name in ("length", "force", "pressure", "volume"))
+    return {path.called(name): path for name, path in paths if path is not None}
 
 
 def _held(test: Any) -> str:
