@@ -111,4 +111,4 @@ def _show(data: Dataset, found: dict[str, int], target: str) -> None:
         which = status == values[word.replace(" ", "_")]
         rows.append((word, str(count), str(reason[which][0])))
     say(table(("status", "designs", "the first because"), rows, right=(1,), title=data.attrs["title"]))
-    say(f"saved to {target}: mckibben.load({target!r}) or xarray.open_zarr({target!r})")
+    say(f"saved to {target}: open it with mckibben.load({target!r})")
