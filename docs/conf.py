@@ -1,4 +1,7 @@
-"""Sphinx configuration. Nothing here needs a network: MathJax is loaded by the reader's browser."""
+"""Sphinx configuration. Nothing here needs a network, nor do readers: MathJax is among the pages.
+
+It is docs/_static/mathjax/tex-svg-full.js of the npm package mathjax 3.2.2, as it is, under the licence beside it.
+"""
 
 from importlib.metadata import version as installed_version
 from pathlib import Path
@@ -18,6 +21,8 @@ extensions = [
 ]
 exclude_patterns = ["_build"]
 root_doc = "index"
+html_static_path = ["_static"]
+mathjax_path = "mathjax/tex-svg-full.js"
 
 myst_enable_extensions = ["amsmath", "dollarmath", "deflist"]
 myst_heading_anchors = 3

@@ -3,10 +3,9 @@
 The braid angle is measured from the axis here, as most catalogues do. Writes out/force_contraction.pdf and .png.
 """
 
-from matplotlib.ticker import MaxNLocator
+from pathlib import Path
 
 import mckibben as mk
-from mckibben.view import curves, style
 
 muscle = mk.Muscle(
     braid=mk.Braid(
@@ -18,18 +17,17 @@ muscle = mk.Muscle(
     name="example",
 )  # fmt: skip
 
-figure = style.new_figure()
-axes = figure.add_subplot()
+curves = {}
 print("pressure   force at 150 mm   free contraction")
-for pressure, colour in zip((1, 2, 3), style.LINES, strict=False):
+for pressure in (1, 2, 3):
     result = mk.run(muscle, mk.Isobaric(pressure=f"{pressure} bar", length="150 mm to 100 mm", points=32))
-    curves.line(axes, result, "contraction", "force", color=colour, label=f"{pressure} bar")
+    curves[f"{pressure} bar"] = result
     free = mk.run(muscle, mk.FreeContraction(pressure=f"{pressure} bar"))
     print(f"{pressure} bar      {result.force[0]:8.2f} N        {100 * free.contraction[0]:8.2f} %")
 
-axes.axhline(0.0, color="0.5", linewidth=0.6)
-axes.set(xlabel=curves.label("contraction"), ylabel=curves.label("force"))
-axes.xaxis.set_major_locator(MaxNLocator(6))
-style.tidy(axes, "best")
-for path in style.save(figure, "out/force_contraction"):
+figure = mk.plot(curves)
+figure.axes[0].axhline(0.0, color="0.5", linewidth=0.6)
+Path("out").mkdir(exist_ok=True)
+for path in ("out/force_contraction.pdf", "out/force_contraction.png"):
+    figure.savefig(path, dpi=200)
     print(path)

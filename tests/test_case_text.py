@@ -12,6 +12,7 @@ from texts import CASE
 from mckibben import spec
 from mckibben.files.case import read_case
 from mckibben.spec import SpecError, presets
+from mckibben.spec.plausible import trusted
 from mckibben.spec.text import Case, apply_overrides, from_mapping, to_mapping, to_toml
 
 pytestmark = pytest.mark.spec
@@ -84,7 +85,8 @@ tests = st.one_of(
 @settings(PROPERTY, max_examples=100)
 @given(call(Case, muscle=muscles, test=tests))
 def test_what_is_written_reads_back_equal(recipe):
-    case = made(recipe)
+    with trusted():  # bare numbers of any size; what is written of them is read back with doubts
+        case = made(recipe)
     mapping = to_mapping(case)
     again = from_mapping(copy.deepcopy(mapping), test_required=False)
     assert again == case
@@ -93,7 +95,7 @@ def test_what_is_written_reads_back_equal(recipe):
 
 
 @PROPERTY
-@given(st.floats(1.0, 100.0), st.floats(1.0, 89.0))
+@given(st.floats(1.0, 99.9), st.floats(1.0, 89.0))
 def test_text_with_units_equals_si_floats(radius, angle):
     spelt, plain = copy.deepcopy(GOOD), copy.deepcopy(GOOD)
     spelt["muscle"]["braid"] |= {"radius": f"{radius!r} cm", "angle": f"{angle!r} deg", "fibres": 2}

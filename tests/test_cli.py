@@ -31,7 +31,7 @@ points = 3
 """
 BEYOND = 'test.length="130 mm"'
 """Every state lies beyond full extension, so that nothing is compiled: fast."""
-COMMANDS = ("run", "sweep", "check", "presets", "plot", "reproduce", "info")
+COMMANDS = ("run", "sweep", "limits", "working-range", "force-map", "check", "presets", "plot", "reproduce", "info")
 
 
 def invoke(*words: object) -> Result:
@@ -134,7 +134,7 @@ def test_json_has_null_where_there_is_no_number(case: Path) -> None:
 def test_quiet_is_silent(case: Path, tmp_path: Path) -> None:
     done = invoke("run", case, "--set", BEYOND, "--quiet", "-o", tmp_path / "out.csv")
     assert (done.exit_code, done.stdout, done.stderr) == (3, "", "")
-    assert "# McKibben muscle, isometric test" in (tmp_path / "out.csv").read_text(encoding="utf-8")
+    assert "McKibben muscle, isometric test" in (tmp_path / "out.csv.txt").read_text(encoding="utf-8")
     refused(invoke("run", case, "--set", "braid.angle=37", "--quiet"), "braid.angle = 37")
 
 

@@ -12,6 +12,7 @@ from pathlib import Path
 
 import attrs
 import numpy as np
+import pandas as pd
 import pytest
 import xarray as xr
 from results import made
@@ -78,7 +79,7 @@ def test_a_run_is_saved_and_loaded(tmp_path: Path) -> None:
 def test_table_says_what_it_is(tmp_path: Path, incomplete: Result) -> None:
     path = mk.save(incomplete, tmp_path / "out.csv")
     lines = path.read_text(encoding="utf-8").splitlines()
-    comments = [line.removeprefix("#").removeprefix(" ") for line in lines if line.startswith("#")]
+    comments = Path(f"{path}.txt").read_text(encoding="utf-8").splitlines()
     assert "mckibben 0.1.0" in comments[1]
     assert "2026-01-01" in comments[1]
     assert "braid.fibres" in comments[2]
@@ -86,7 +87,12 @@ def test_table_says_what_it_is(tmp_path: Path, incomplete: Result) -> None:
     start, middle = comments.index("the muscle (TOML):"), comments.index("the test (TOML):")
     assert muscle_from_mapping(tomllib.loads("\n".join(comments[start + 1 : middle]))) == PAPER
     assert test_from_mapping(tomllib.loads("\n".join(comments[middle + 1 :]))) == CURVE
-    rows = list(csv.DictReader(line for line in lines if not line.startswith("#")))
+    rows = list(csv.DictReader(lines))
+    frame = pd.read_csv(path)
+    assert frame["force [N]"].tolist()[:3] == incomplete.force[:3].tolist()
+    assert frame["largest_diameter [m]"][0] == 2.0 * incomplete.column("r")[0].max()
+    assert frame["peak_fibre_tension [N]"][0] == incomplete.column("fibre_tension")[0].max()
+    assert frame["safety_factor"].isna().all()  # no breaking force is given
     assert [float(row["force [N]"]) for row in rows[:3]] == incomplete.force[:3].tolist()
     assert {"contraction", "pressure [Pa]", "volume [m^3]", "energy [J]"} <= rows[0].keys()
     assert not set(FIELDS) & rows[0].keys()
@@ -104,7 +110,7 @@ def test_nothing_is_replaced_unless_asked(tmp_path: Path, incomplete: Result, na
     assert path.read_text() == "precious"
     mk.save(incomplete, path, force=True)
     assert path.stat().st_size > 1000
-    assert os.listdir(tmp_path) == [name]
+    assert sorted(os.listdir(tmp_path)) == sorted({name, *([f"{name}.txt"] if name.endswith(".csv") else [])})
 
 
 @pytest.mark.parametrize(

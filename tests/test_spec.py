@@ -269,7 +269,7 @@ def test_replace():
         ("braid.angel", r'is no field of this muscle; did you mean "braid.angle"'),
         ("brade.angle", 'did you mean "braid.angle"'),
         ("braid.angle.deg", "is no field"),
-        ("braid.angle_from", "is no field"),
+        ("braid.angle_from", "must be one of parallels, axis"),
         ("", "is no field"),
         ("chamber.law.c3", 'did you mean "chamber.law.c1"'),
     ],

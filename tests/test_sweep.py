@@ -14,7 +14,8 @@ from hypothesis import strategies as st
 import mckibben as mk
 from mckibben.spec.vary import changed
 from mckibben.sweeps import chunk
-from mckibben.sweeps.outcome import STATUSES
+from mckibben.sweeps.dataset import arranged, flat
+from mckibben.sweeps.outcome import STATUSES, empty
 from mckibben.sweeps.plan import plan
 
 pytestmark = pytest.mark.sweeps
@@ -239,3 +240,14 @@ def test_a_table_is_its_rows(rows: list[tuple[float, str]], size: int) -> None:
     assert data["braid.angle"].values.tolist() == [angle for angle, _ in rows]
     assert data["ends"].values.tolist() == [ends for _, ends in rows]
     assert set(status(data)) == {"incomplete"}
+
+
+def test_designs_in_a_row_become_a_grid_by_xarray_alone() -> None:
+    """As xarray.open_zarr gives them, and as the recipe says."""
+    made = plan(MUSCLE, BEYOND, {"braid.angle": ["36 deg", "37 deg"], "ends": ["pinned", "clamped", "free"]})
+    row = flat(made, empty(len(made), made.steps))
+    row["force"][:] = np.arange(18.0).reshape(6, 3)
+    grid = row.set_index(design=["braid.angle", "ends"]).unstack("design")
+    assert dict(grid.sizes) == dict(arranged(row).sizes)
+    found = grid.force.transpose("braid.angle", "ends", "step").sel(ends=arranged(row)["ends"])
+    np.testing.assert_array_equal(found, arranged(row).force)

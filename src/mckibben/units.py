@@ -37,6 +37,8 @@ _USUAL = {
 """The usual units with their SI unit and factor, which need no pint; a test compares them with pint's."""
 
 _NUMBER = re.compile(r"([+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?)\s*(.*)", re.DOTALL)
+_COMMA = re.compile(r",(\d+)\s*(.*)", re.DOTALL)
+"""What follows the digits before a decimal comma: "12,5 mm"."""
 # Only names, one-digit powers and separators reach pint, whose own reader would evaluate any arithmetic ("9**9**9").
 _WORD = r"[A-Za-zµμ]+(?: ?(?:\^|\*\*) ?-?\d)?"
 _UNIT = re.compile(rf"{_WORD}(?:(?: ?[*/] ?| ){_WORD})*")
@@ -71,6 +73,8 @@ def _factor(unit: str, wanted: str) -> float:
     if wanted == "1":
         if clean in ("", "dimensionless"):
             return 1.0
+        if clean == "%":
+            return 0.01
         raise UnitError("must be a plain number without a unit", f'leave out "{unit}"')
     if clean in _USUAL and wanted in _USUAL:
         kind, factor = _USUAL[clean]
@@ -151,6 +155,10 @@ def _from_text(text: str, unit: str) -> float:
     if found is None:
         raise UnitError("must be a number", _example(unit))
     number, written = found
+    comma = _COMMA.fullmatch(written)
+    if comma:
+        pointed = f"{number}.{comma[1]} {comma[2]}".rstrip()
+        raise UnitError("has a comma in its number", f'write a decimal point: "{pointed}"')
     try:
         plain = float(number)
         if not written and unit != "1":

@@ -11,6 +11,7 @@ import typer
 
 from mckibben.app import draw as commands_draw
 from mckibben.app import look as commands_look
+from mckibben.app import reach as commands_reach
 from mckibben.app import run as commands_run
 from mckibben.app import sensitivity as commands_derive
 from mckibben.app import sweep as commands_sweep
@@ -36,6 +37,9 @@ app = typer.Typer(
 app.command(epilog=commands_run.EPILOG)(commands_run.run)
 app.command(epilog=commands_sweep.EPILOG)(commands_sweep.sweep)
 app.command(epilog=commands_derive.SENSITIVITY)(commands_derive.sensitivity)
+app.command(epilog=commands_reach.LIMITS)(commands_reach.limits)
+app.command(epilog=commands_reach.WORKING_RANGE)(commands_reach.working_range)
+app.command(epilog=commands_reach.FORCE_MAP)(commands_reach.force_map)
 app.command(epilog=commands_look.CHECK)(commands_look.check)
 app.command(epilog=commands_look.PRESETS)(commands_look.presets)
 app.command(epilog=commands_draw.PLOT)(commands_draw.plot)

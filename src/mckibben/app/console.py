@@ -16,6 +16,8 @@ import typer
 if TYPE_CHECKING:
     from rich.console import Console, JustifyMethod
 
+    from mckibben.spec.errors import SpecError
+
 __all__ = [
     "COMPLETE",
     "INCOMPLETE",
@@ -63,9 +65,15 @@ def _console(stderr: bool = False) -> Console:
     return Console(stderr=stderr, highlight=False, markup=False, emoji=False)
 
 
-def say(*things: Any, style: str | None = None) -> None:
-    """Text or tables for the user, on stdout; a line of text is never broken."""
-    _console().print(*things, style=style, soft_wrap=all(isinstance(thing, str) for thing in things))
+def say(*things: Any, style: str | None = None, whole: bool = False) -> None:
+    """Text or tables for the user, on stdout; a line of text is never broken, nor with `whole` one of a table."""
+    console = _console()
+    if whole:  # rather wider than the terminal than digits cut off
+        from rich.measure import Measurement
+
+        wide = console.options.update(width=1000)
+        console.width = max(console.width, *(Measurement.get(console, wide, thing).maximum for thing in things))
+    console.print(*things, style=style, soft_wrap=all(isinstance(thing, str) for thing in things))
 
 
 def complain(message: str) -> None:
@@ -76,6 +84,16 @@ def complain(message: str) -> None:
 def show_json(value: dict[str, Any]) -> None:
     """Print one JSON object on stdout. It must hold None in place of NaN and infinity, which JSON does not know."""
     typer.echo(json.dumps(value, ensure_ascii=False, allow_nan=False))
+
+
+def _error(error: SpecError) -> dict[str, Any]:
+    """Wrong input for JSON: the parts of the error, and the whole of it as one line."""
+    from mckibben.spec.errors import MISSING
+
+    value = None if error.value is MISSING else error.value
+    plain = value if isinstance(value, (str, int, bool, type(None))) else str(value)
+    parts = {"field": error.field, "value": plain, "allowed": error.allowed, "advice": error.advice}
+    return {"message": str(error)} | parts
 
 
 def command(function: Callable[P, int | None]) -> Callable[P, None]:
@@ -90,6 +108,8 @@ def command(function: Callable[P, int | None]) -> Callable[P, None]:
             code = function(*args, **kwargs)
         except SpecError as error:
             complain(str(error))
+            if kwargs.get("as_json"):
+                show_json({"error": _error(error)})
             raise typer.Exit(INPUT) from error
         except SweepError as error:
             complain(str(error))
@@ -108,8 +128,8 @@ def command(function: Callable[P, int | None]) -> Callable[P, None]:
 def progress(what: str, hidden: bool = False, unit: str = "") -> Iterator[Watch]:
     """A function to call with (done, in all) during long work; it draws a bar if stderr is a terminal.
 
-    With `unit` ("designs") the bar shows how many are done per second and the time left. What was done before the first
-    call, as when a sweep goes on, does not count for these.
+    The bar shows the time elapsed and the time left. With `unit` ("designs") it also shows how many are done a second.
+    What was done before the first call, as when a sweep goes on, does not count for these.
     """
     console = _console(stderr=True)
     if hidden or not console.is_terminal:
@@ -124,14 +144,28 @@ def progress(what: str, hidden: bool = False, unit: str = "") -> Iterator[Watch]
         TimeElapsedColumn,
         TimeRemainingColumn,
     )
+    from rich.text import Text
+
+    class Elapsed(TimeElapsedColumn):
+        """Time since the work began, with its label."""
+
+        def render(self, task: Any) -> Text:
+            return Text.assemble("elapsed ", super().render(task))
+
+    class Left(TimeRemainingColumn):
+        """Time that is left, with its label."""
+
+        def render(self, task: Any) -> Text:
+            return Text.assemble("left ", super().render(task))
 
     columns = (
         SpinnerColumn(),
         TextColumn("{task.description}"),
         BarColumn(),
         MofNCompleteColumn(),
-        *((TextColumn("{task.fields[rate]}"), TimeRemainingColumn(elapsed_when_finished=True)) if unit else ()),
-        *(() if unit else (TimeElapsedColumn(),)),
+        *((TextColumn("{task.fields[rate]}"),) if unit else ()),
+        Elapsed(),
+        Left(),
     )
     with Progress(*columns, console=console, transient=True) as bar:
         task = bar.add_task(f"{what}: compiling", total=None, rate="")
@@ -157,16 +191,19 @@ def table(
     right: Sequence[int] = (),
     whole: Sequence[int] = (0,),
     most: int = 0,
+    narrow: bool = False,
 ) -> Any:
     """A table of text. Columns by number: those in `right` are numbers, those in `whole` are never broken into lines.
 
-    With `most`, rows in the middle are left out.
+    With `most`, rows in the middle are left out. `narrow` puts columns close together.
     """
     from rich import box
     from rich.table import Table
     from rich.text import Text
 
     made = Table(title=Text(title, style="bold") if title else None, title_justify="left", box=box.SIMPLE_HEAD)
+    if narrow:
+        made.padding, made.pad_edge, made.show_edge = (0, 1, 0, 0), False, False
     made.show_header = any(columns)
     for index, name in enumerate(columns):
         justify: JustifyMethod = "right" if index in right else "left"

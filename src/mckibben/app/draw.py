@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Iterator
+from contextlib import contextmanager, suppress
 from enum import StrEnum
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
@@ -29,6 +30,10 @@ REPRODUCE = examples(
 PICTURES = {".png": "picture", ".pdf": "print", ".svg": "web"}
 
 
+PIXELS = 1200
+"""Least width of a picture in pixels, for slides and screens."""
+
+
 class Kind(StrEnum):
     """What to draw."""
 
@@ -36,6 +41,7 @@ class Kind(StrEnum):
     profiles = "profiles"
     tension = "tension"
     energy = "energy"
+    shares = "shares"
 
 
 @command
@@ -43,7 +49,7 @@ def plot(
     file: Annotated[Path, typer.Argument(metavar="FILE.nc", help="a result saved by mckibben run -o FILE.nc")],
     output: Annotated[
         Path | None,
-        typer.Option("--output", "-o", metavar="PICTURE", help="the picture: .png, .pdf or .svg [default: FILE.png]"),
+        typer.Option("--output", "-o", metavar="PICTURE", help=r"the picture: .png, .pdf or .svg \[default: FILE.png]"),
     ] = None,
     kind: Annotated[
         Kind, typer.Option(help="auto: the curve of the test; profiles: radius and angle along the muscle")
@@ -61,7 +67,7 @@ def plot(
     figure = _figure(result, kind)
     from mckibben.view import style
 
-    disk.write(target, style.picture(figure, suffix[1:]), force)
+    disk.write(target, style.picture(figure, suffix[1:], PIXELS), force)
     say(f"drawn: {target}")
 
 
@@ -69,15 +75,9 @@ def _figure(result: Result, kind: Kind) -> Figure:
     import matplotlib
 
     matplotlib.use("Agg")  # draws to files only, without a window
-    from mckibben.view import curves
+    from mckibben.view.plot import plot
 
-    draw: dict[Kind, Callable[[Result], Figure]] = {
-        Kind.auto: curves.plot,
-        Kind.profiles: curves.profiles,
-        Kind.tension: curves.tension,
-        Kind.energy: curves.energy,
-    }
-    return draw[kind](result)
+    return plot(result, str(kind))
 
 
 @command
@@ -97,10 +97,9 @@ def reproduce(
     length). No measured data come with this package.
     """
     curves = dict(_pair(text) for text in measured or ())
-    _make_folder(output)
     from mckibben.app.solving import solving
 
-    with solving("reproducing") as watch:
+    with _folder(output), solving("reproducing") as watch:
         from mckibben.paper import reproduce as making
 
         made = making.reproduce(output, watch=watch, measured=curves, force=force)
@@ -130,13 +129,25 @@ def _pair(text: str) -> tuple[str, str]:
     return name.strip(), path.strip()
 
 
-def _make_folder(folder: Path) -> None:
-    """Make the folder of the pictures and see that files can be made in it, before anything takes time."""
+@contextmanager
+def _folder(folder: Path) -> Iterator[None]:
+    """Make the folder of the pictures and see that files can be made in it, before anything takes time.
+
+    What was made goes again if the work inside fails and left it empty.
+    """
     from mckibben import disk
     from mckibben.spec.errors import SpecError
 
+    missing = [part for part in (folder, *folder.parents) if not part.exists()]
     try:
-        folder.mkdir(parents=True, exist_ok=True)
-    except OSError as error:
-        raise SpecError(str(folder), allowed=f"cannot be made: {error.strerror or error}") from error
-    disk.check_target(folder / "picture.pdf", force=True)
+        try:
+            folder.mkdir(parents=True, exist_ok=True)
+        except OSError as error:
+            raise SpecError(str(folder), allowed=f"cannot be made: {error.strerror or error}") from error
+        disk.check_target(folder / "picture.pdf", force=True)
+        yield
+    except BaseException:
+        with suppress(OSError):  # the first that is not empty ends it
+            for part in missing:
+                part.rmdir()
+        raise

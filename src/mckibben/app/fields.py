@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator
 from typing import Any
 
-from mckibben.spec import Muscle, Test, presets, walk
+from mckibben.spec import Muscle, Path, Test, presets, walk
 from mckibben.spec.change import CHANGED
 from mckibben.spec.declared import Declared
 from mckibben.units import show, to_si
@@ -68,7 +68,8 @@ def test_rows(test: Test) -> Iterator[tuple[str, str, str]]:
             for index, step in enumerate(value):
                 yield from ((f"steps[{index}].{inner}", text, meaning) for inner, text, meaning in test_rows(step))
         elif value is not None:
-            yield name, _text(declared, value), declared.meaning
+            said = value.called(name) if isinstance(value, Path) else name
+            yield said, _text(declared, value), "contraction 1 - h/H0" if said != name else declared.meaning
 
 
 test_rows.__test__ = False  # type: ignore[attr-defined]  # not a test for pytest to collect
@@ -76,7 +77,7 @@ test_rows.__test__ = False  # type: ignore[attr-defined]  # not a test for pytes
 
 def _text(declared: Declared, value: Any) -> str:
     if declared.kind == "quantity":
-        return declared.text(value)
+        return declared.explained(value)
     if declared.kind == "quantities":
         return ", ".join(declared.text(item) for item in value)
     return str(value)

@@ -2,18 +2,20 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from mckibben.app.console import command, examples, say, table
+from mckibben.app.console import command, examples, say, show_json, table
 
 if TYPE_CHECKING:
     from mckibben.sweeps.sweepfile import SweepCase
 
 __all__ = ["CHECK", "INFO", "PRESETS", "check", "info", "presets"]
 
+AsJson = Annotated[bool, typer.Option("--json", help="print one JSON object and nothing else, errors included")]
 CHECK = examples("mckibben check case.toml", 'mckibben check case.toml --set braid.angle="36 deg"')
 PRESETS = examples("mckibben presets", "mckibben presets paper", "mckibben presets paper --toml > case.toml")
 INFO = examples("mckibben info", "mckibben info out.nc", "mckibben info out.zarr")
@@ -26,6 +28,7 @@ def check(
         list[str] | None,
         typer.Option("--set", metavar="NAME=VALUE", help='change a value of the case, such as braid.angle="36 deg"'),
     ] = None,
+    as_json: AsJson = False,
 ) -> None:
     """Check a case file and show the muscle and the test as understood, without solving.
 
@@ -39,11 +42,14 @@ def check(
     from mckibben.app import fields
     from mckibben.experiments import foresee
 
+    if as_json:
+        show_json(_as_json(asked))
+        return
     name = f' "{found.muscle.name}"' if found.muscle.name else ""
     columns = ("field", "value", "meaning", "source")
     rows = list(fields.muscle_rows(found.muscle))
     marks, sources = fields.numbered(row[3] for row in rows)
-    marked = [(*row[:3], mark) for row, mark in zip(rows, marks, strict=True)]
+    marked = [(*_short(*row[:3]), mark) for row, mark in zip(rows, marks, strict=True)]
     say(table(columns, marked, title=f"Muscle{name}", whole=(0, 1, 3)))
     for source in sources:
         say(source)
@@ -59,12 +65,41 @@ def check(
         say('There is no test: add a [test] table, such as kind = "isometric".')
 
 
+def _short(field: str, value: str, meaning: str) -> tuple[str, str, str]:
+    """A row with a short value: from what an angle is measured goes to its meaning."""
+    number, measured, more = value.partition(" from the ")
+    return field, number, f"{meaning}: {number}{measured}{more}" if measured else meaning
+
+
+def _narrow(value: str) -> str:
+    """A value for a column: what is added in brackets goes on a line of its own."""
+    return value.replace(" (", "\n(")
+
+
+def _as_json(asked: SweepCase) -> dict[str, Any]:
+    """What `check` understands, for JSON: the specification in SI units, and texts of what follows."""
+    from mckibben.experiments import foresee
+    from mckibben.spec.text import to_mapping
+
+    case = asked.case
+    swept = None if asked.over is None and asked.designs is None else dict(_swept(asked))
+    return {
+        "valid": True,
+        **to_mapping(case, allow_custom=True),
+        "assumed": list(case.muscle.assumed),
+        "braid": foresee.turns(case.muscle),
+        "derived": {name: value for name, value, _ in foresee.derived(case.muscle)},
+        "sweep": swept,
+        "notes": list(foresee.beyond(case.muscle, case.test)),
+    }
+
+
 def _swept(asked: SweepCase) -> list[tuple[str, str]]:
     from mckibben.sweeps.plan import plan
 
     assert asked.case.test is not None  # read_sweep raises without a test
     wanted = plan(asked.case.muscle, asked.case.test, asked.over, asked.designs, chunk=asked.chunk)
-    rows = [(varied.field, _range(varied.coordinate, varied.unit)) for varied in wanted.varied]
+    rows = [(varied.field, _range(varied.coordinate, varied.about)) for varied in wanted.varied]
     return [*rows, ("designs in all", str(len(wanted)))]
 
 
@@ -72,6 +107,7 @@ def _swept(asked: SweepCase) -> list[tuple[str, str]]:
 def presets(
     name: Annotated[str | None, typer.Argument(metavar="[NAME]", help="one preset; all are listed without it")] = None,
     toml: Annotated[bool, typer.Option("--toml", help="print a case file with the preset, ready to run")] = False,
+    as_json: AsJson = False,
 ) -> None:
     """List the named muscles, or show one: each value with its source or marked as assumed."""
     from mckibben.spec import presets as known
@@ -81,7 +117,10 @@ def presets(
         if toml:
             raise SpecError("--toml", allowed="needs the name of a preset", advice="one of " + ", ".join(known.names()))
         lines = [(key, (getattr(known, key).__doc__ or "").split("\n")[0]) for key in known.names()]
-        say(table(("preset", "what it is"), lines))
+        if as_json:
+            show_json({"presets": [{"name": key, "about": about} for key, about in lines]})
+        else:
+            say(table(("preset", "what it is"), lines))
         return
     from mckibben.app import fields
 
@@ -89,17 +128,30 @@ def presets(
     if toml:
         typer.echo(fields.case_text(name), nl=False)
         return
-    rows = [(field, value, source) for field, value, _, source in fields.muscle_rows(muscle)]
+    if as_json:
+        from mckibben.spec.text import to_mapping
+
+        show_json({"name": name, "muscle": to_mapping(muscle), "sources": known.sources(name)})
+        return
+    rows = [(field, _narrow(value), source) for field, value, _, source in fields.muscle_rows(muscle)]
     say(table(("field", "value", "source"), rows, title=f'Muscle "{name}"', whole=(0, 1)))
 
 
 @command
 def info(
     file: Annotated[Path | None, typer.Argument(metavar="[FILE]", help="a saved result (.nc) or sweep (.zarr)")] = None,
+    as_json: AsJson = False,
 ) -> None:
     """Show the versions and the machine, or with a file what it holds."""
     look = _sweep if file is not None and file.suffix.lower() == ".zarr" else _content
-    say(table(("", ""), _installation() if file is None else look(file)))
+    rows = _installation() if file is None else look(file)
+    if as_json:
+        found: dict[str, Any] = {}
+        for name, value in rows:
+            found.setdefault(name, []).append(value)
+        show_json({name: values[0] if len(values) == 1 else values for name, values in found.items()})
+    else:
+        say(table(("", ""), rows))
 
 
 def _installation() -> list[tuple[str, str]]:
@@ -168,7 +220,7 @@ def _sweep(file: Path) -> list[tuple[str, str]]:
     ]
     for name, coordinate in data.coords.items():
         if name != "step":
-            rows.append((str(name), _range(coordinate.values, coordinate.attrs.get("units", ""))))
+            rows.append((str(name), _range(coordinate.values, coordinate.attrs)))
     for name, unit in (("length", "mm"), ("force", "N"), ("pressure", "bar"), ("peak_fibre_tension", "N")):
         values = data[name].values
         values = from_si(values[~np.isnan(values)], unit)
@@ -176,13 +228,17 @@ def _sweep(file: Path) -> list[tuple[str, str]]:
     return rows
 
 
-def _range(values: Any, unit: str) -> str:
+def _range(values: Any, about: Mapping[str, Any]) -> str:
     """The values of a swept field in words: their number and either the range or all of them."""
     from mckibben.units import DISPLAY, from_si
 
+    unit, measured = str(about.get("units", "")), about.get("measured_from")
     if values.dtype.kind not in "if":
         words = list(dict.fromkeys(str(value) for value in values))
         return f"{len(values)}: " + ", ".join(words[:6]) + (", ..." if len(words) > 6 else "")
     shown = "" if unit == "1" else DISPLAY.get(unit, unit)
     numbers = from_si(values, shown) if shown else values
-    return f"{len(values)}: {numbers.min():.6g} to {numbers.max():.6g} {shown}".rstrip()
+    said = f"{len(values)}: {numbers.min():.6g} to {numbers.max():.6g} {shown}".rstrip()
+    if measured in ("parallels", "axis"):
+        return f"{said} from the {measured}"
+    return f"{said}, from what {measured} says" if measured else said

@@ -8,16 +8,28 @@ from typing import Any
 
 from mckibben.app.console import COMPLETE, INCOMPLETE, INTERRUPTED, say, table
 from mckibben.app.fields import muscle_rows
+from mckibben.experiments import foresee
+from mckibben.files.table import COLUMNS as COLUMNS_SI
 from mckibben.files.table import rows
 from mckibben.results.result import Result
-from mckibben.results.variables import STEP
+from mckibben.results.variables import EXTREMES
 from mckibben.results.verdict import Verdict
 from mckibben.units import from_si
 
 __all__ = ["as_json", "exit_code", "show"]
 
-COLUMNS = (("length", "mm"), ("contraction", "%"), ("force", "N"), ("pressure", "bar"), ("volume", "mL"))
-"""Columns of the table: variable and the unit it is shown in."""
+COLUMNS = (
+    ("length", "length", "mm"),
+    ("contraction", "contr.", "%"),
+    ("force", "force", "N"),
+    ("pressure", "press.", "bar"),
+    ("volume", "volume", "mL"),
+    ("largest_diameter", "diam.", "mm"),
+    ("peak_fibre_tension", "tension", "N"),
+)
+"""Columns of the table: variable, its short name and the unit it is shown in."""
+SAFETY = ("safety_factor", "safety", "")
+"""The column of a muscle whose fibres have a breaking force."""
 MOST_ROWS = 40
 """Rows of the table; of more states the ones in the middle are left out."""
 GOOD = (Verdict.STABLE, Verdict.UNSTABLE)
@@ -35,9 +47,11 @@ def show(result: Result, tolerance: float) -> None:
     """Print the table of states, then the notes on them."""
     states = list(rows(result))
     several = states[-1]["protocol_step"] > 0
-    names = ["state", *(["step"] if several else []), *(f"{name}\n[{unit}]" for name, unit in COLUMNS), "verdict"]
+    columns = COLUMNS if result.muscle.braid.fibre.breaking_force is None else (*COLUMNS, SAFETY)
+    heads = (f"{name}\n[{unit}]" if unit else name for _, name, unit in columns)
+    names = ["state", *(["step"] if several else []), *heads, "verdict"]
     cells = [
-        [str(k), *([str(row["protocol_step"])] if several else []), *_numbers(row), row["verdict"]]
+        [str(k), *([str(row["protocol_step"])] if several else []), *_numbers(row, columns), row["verdict"]]
         for k, row in enumerate(states)
     ]
     say(
@@ -48,20 +62,27 @@ def show(result: Result, tolerance: float) -> None:
             right=range(len(names) - 1),
             whole=(len(names) - 1,),
             most=MOST_ROWS,
-        )
+            narrow=True,
+        ),
+        whole=True,
     )
+    say(foresee.turns(result.muscle))
+    say("contr.: contraction; diam.: largest diameter of the braid; tension: the largest of a fibre")
     for note in _notes(result, states, tolerance):
         say(note)
 
 
-def _numbers(row: dict[str, Any]) -> Iterator[str]:
-    for name, unit in COLUMNS:
+def _numbers(row: dict[str, Any], columns: tuple[tuple[str, str, str], ...]) -> Iterator[str]:
+    for name, _, unit in columns:
         value = row[name]
         if value is None:
             yield "-"
         else:
-            shown = 100.0 * value if unit == "%" else from_si(value, unit)
-            yield f"{shown:.5g}" if abs(shown) > 1e-9 else "0"  # a force held at 0 N comes out as a rounding error
+            shown = 100.0 * value if unit == "%" else from_si(value, unit or "1")
+            digits = 4 if name in EXTREMES else 5
+            yield (
+                f"{shown:.{digits}g}" if abs(shown) > 1e-9 else "0"
+            )  # a force held at 0 N comes out as a rounding error
 
 
 def _notes(result: Result, states: list[dict[str, Any]], tolerance: float) -> Iterator[str]:
@@ -102,7 +123,7 @@ def as_json(result: Result, file: str | None) -> dict[str, Any]:
         "test": tomllib.loads(about["test"]),
         "assumed": list(result.muscle.assumed),
         "warnings": list(filter(None, about["warnings"].splitlines())),
-        "units": {name: unit for name, (unit, _) in STEP.items() if unit},
+        "units": {name: unit for name, (unit, _) in COLUMNS_SI.items() if unit},
         "states": list(rows(result)),
         "mckibben_version": about["mckibben_version"],
         "versions": about["versions"],

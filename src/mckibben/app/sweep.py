@@ -24,19 +24,19 @@ EPILOG = examples(
 
 @command
 def sweep(
-    file: Annotated[Path, typer.Argument(metavar="SWEEP.toml", help="a case file with a [sweep] table")],
+    file: Annotated[Path, typer.Argument(metavar="SWEEP.toml", help=r"a case file with a \[sweep] table")],
     overrides: Annotated[
         list[str] | None,
         typer.Option("--set", metavar="NAME=VALUE", help='change a value of the base, such as braid.angle="36 deg"'),
     ] = None,
     output: Annotated[
         Path | None,
-        typer.Option("--output", "-o", metavar="STORE.zarr", help="where the results go [default: SWEEP.zarr]"),
+        typer.Option("--output", "-o", metavar="STORE.zarr", help=r"where the results go \[default: SWEEP.zarr]"),
     ] = None,
     force: Annotated[bool, typer.Option("--force", help="delete another sweep that is there")] = False,
     workers: Annotated[
         int | None,
-        typer.Option(min=0, help="processes on this machine, 0 for this one alone [default: one per core]"),
+        typer.Option(min=0, help=r"processes on this machine, 0 for this one alone \[default: one per core]"),
     ] = None,
     scheduler: Annotated[
         str | None, typer.Option(metavar="ADDRESS", help="a Dask scheduler that is running, such as tcp://head:8786")
@@ -111,4 +111,4 @@ def _show(data: Dataset, found: dict[str, int], target: str) -> None:
         which = status == values[word.replace(" ", "_")]
         rows.append((word, str(count), str(reason[which][0])))
     say(table(("status", "designs", "the first because"), rows, right=(1,), title=data.attrs["title"]))
-    say(f"saved to {target}: mckibben.load({target!r}) or xarray.open_zarr({target!r})")
+    say(f"saved to {target}: open it with mckibben.load({target!r})")

@@ -7,19 +7,27 @@ import xarray as xr
 
 from mckibben.experiments.run import run
 from mckibben.spec import Isobaric, Muscle, Step
+from mckibben.spec.plausible import trusted
 from mckibben.spec.text import to_toml
 
 VARIABLES = {"force": "N", "volume": "m^3", "contraction": "1", "energy": "J"}
 
 
 def force_map(
-    muscle: Muscle, *, length: Any, pressure: Any, points: int | None = None, tolerance: float = 1e-6
+    muscle: Muscle,
+    *,
+    length: Any = None,
+    contraction: Any = None,
+    pressure: Any,
+    points: int | None = None,
+    tolerance: float = 1e-6,
 ) -> xr.Dataset:
     """Force-length-pressure map: one isobaric curve for each pressure.
 
     Args:
         muscle: the specification.
         length: lengths [m]: a ramp such as "60 mm to 115 mm", or a list.
+        contraction: in place of the lengths: 1 - h/H0, such as "0 to 25 %".
         pressure: gauge pressures [Pa]: a ramp such as "0 to 3 bar", or a list.
         points: number of lengths and of pressures along ramps (21 if left out).
         tolerance: relative error aimed at.
@@ -35,10 +43,13 @@ def force_map(
     >>> table.force.sel(pressure=1e5).values.round(2)  # N
     array([101.22,  79.87,  61.77])
     """
-    grid = Step(length=length, pressure=1.0, points=points), Step(length=1.0, pressure=pressure, points=points)
+    (across,) = Step(length=length, contraction=contraction, force=0.0, points=points).as_steps(muscle)  # type: ignore[call-arg]
+    grid = across, Step(force=0.0, pressure=pressure, points=points)
     lengths, pressures = (getattr(step, name) for step, name in zip(grid, ("length", "pressure"), strict=True))
     heights, levels = lengths.sample(grid[0].points), pressures.sample(grid[1].points)
-    curves = [run(muscle, Isobaric(pressure=float(P), length=heights.tolist()), tolerance=tolerance) for P in levels]
+    with trusted():  # these numbers were read above
+        tests = [Isobaric(pressure=float(P), length=heights.tolist()) for P in levels]
+    curves = [run(muscle, test, tolerance=tolerance) for test in tests]
     axes = ("pressure", "length")
     variables: dict[str, Any] = {
         name: (axes, np.stack([curve.data[name].values for curve in curves]), {"units": unit})

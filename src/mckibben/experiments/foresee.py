@@ -7,14 +7,16 @@ from collections.abc import Iterator
 
 from mckibben.model.extension import full_extension
 from mckibben.spec import Muscle, Test
+from mckibben.spec.angle import MAGIC, both_ways, tendency
 from mckibben.units import show
 
-__all__ = ["beyond", "derived"]
+__all__ = ["beyond", "derived", "turns"]
 
 
 def derived(muscle: Muscle) -> Iterator[tuple[str, str, str]]:
     """(quantity, value, meaning) of what follows from the fields without solving anything."""
     braid, fibre = muscle.braid, muscle.braid.fibre
+    yield "braid", tendency(braid.angle), f"long muscles turn at {show(MAGIC, 'rad', 4)} from the parallels (Eq. 31)"
     longest = full_extension(braid.radius, braid.length, braid.angle, str(muscle.ends))
     yield (
         "full extension",
@@ -31,6 +33,12 @@ def derived(muscle: Muscle) -> Iterator[tuple[str, str, str]]:
         room = 2.0 * math.pi * braid.radius * math.sin(braid.angle) / (braid.fibres // 2)
         said = f"between neighbouring fibres as made: {room / fibre.diameter:.3g} diameters; the braid jams at 1"
         yield "jamming room", show(room, "m"), said
+
+
+def turns(muscle: Muscle) -> str:
+    """What the braid angle makes of the muscle, in a line."""
+    angle = muscle.braid.angle
+    return f"braid of {both_ways(angle)}: {tendency(angle)}"
 
 
 def beyond(muscle: Muscle, test: Test | None) -> Iterator[str]:

@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+import warnings
 from typing import TYPE_CHECKING, Any
 
 import attrs
 import numpy as np
 
+from mckibben.measure.caution import MuscleWarning
 from mckibben.results.verdict import Shape
 from mckibben.search.walk import BranchEnd, branch_end, look
 from mckibben.solver.bench import Bench
@@ -14,6 +16,7 @@ from mckibben.solver.find import find
 from mckibben.solver.held import Held
 from mckibben.spec import Muscle, Path, SpecError, Step
 from mckibben.spec.text import to_toml
+from mckibben.units import show
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -22,6 +25,19 @@ SIZE = 48
 """Half-length unknowns: limits of the reference muscle to 1e-8."""
 TRIALS = 12
 """Pressures tried upwards when one is sought that holds a length, each four times the last."""
+FIRST = 1e3
+"""The first of these above the pressure at which it starts [Pa]."""
+
+
+class Pressure(float):
+    """A pressure [Pa] that was sought, NaN with a `reason` where there is none."""
+
+    reason: str
+
+    def __new__(cls, value: float, reason: str = "") -> Pressure:
+        made = super().__new__(cls, value)
+        made.reason = reason
+        return made
 
 
 @attrs.frozen
@@ -100,8 +116,7 @@ def limits(muscle: Muscle, *, pressure: Any) -> Limits:
 
 def _value(name: str, value: Any) -> float:
     """One controlled quantity from what a user gives."""
-    other = "length" if name == "pressure" else "pressure"
-    path = getattr(Step(**{name: value, other: 1.0}), name)
+    path = getattr(Step(**{name: value, "force": 0.0}), name)
     if path.needs_present or path.varies:
         raise SpecError(f"limits.{name}", str(path), "must be one value")
     return float(path.sample(1)[0])
@@ -136,29 +151,37 @@ def _force_extremum(bench: Bench, pressure: float, end: BranchEnd) -> tuple[floa
     return found.force, at
 
 
-def least_pressure(muscle: Muscle, *, length: Any, shapes: bool = True) -> float:
+def least_pressure(muscle: Muscle, *, length: Any = None, contraction: Any = None, shapes: bool = True) -> float:
     """Least gauge pressure [Pa], zero or above, at which a muscle is stable and admissible at a length.
 
     Args:
         muscle: the specification.
         length: distance between the fittings [m], a number or text with a unit.
+        contraction: in place of the length: 1 - h/H0, such as "10 %" or 0.1.
         shapes: False if only stability counts, and the wall may lie behind its fitting.
 
     Returns:
-        The pressure [Pa]; NaN where none will do, as beyond full extension.
+        The pressure [Pa]; NaN where none will do, as beyond full extension. Then a `MuscleWarning` says why, and so
+        does the number's own `reason`, which is empty otherwise.
 
     Raises:
         SpecError: for a length that is not one value in range.
 
     >>> mk.least_pressure(mk.presets.paper(), length="55 mm")  # it holds without pressure
     0.0
-    >>> mk.least_pressure(mk.presets.paper(), length="130 mm")  # longer than its fibres
-    nan
+    >>> none = mk.least_pressure(mk.presets.paper(), length="130 mm")  # longer than its fibres
+    >>> none, none.reason
+    (nan, 'no equilibrium: the fibres are straight at 128.7786 mm, the longest possible length')
     """
-    h, bench = _value("length", length), Bench.of(muscle)
-    if h >= bench.longest:
-        return float("nan")
-    return holding(bench, h, 0.0, shapes=shapes)
+    (step,) = Step(length=length, contraction=contraction, force=0.0).as_steps(muscle)  # type: ignore[call-arg]
+    h, bench = _value("length", step.length), Bench.of(muscle)
+    found = float("nan") if h >= bench.longest else holding(bench, h, 0.0, shapes=shapes)
+    if found == found:
+        return Pressure(found)
+    highest = show(FIRST * 4.0 ** (TRIALS - 1), "Pa", 2)
+    reason = bench.too_long() if h >= bench.longest else f"no pressure up to {highest} holds {show(h, 'm')}"
+    warnings.warn(f"no least pressure: {reason}", MuscleWarning, stacklevel=2)
+    return Pressure(found, reason)
 
 
 def holding(
@@ -176,7 +199,7 @@ def holding(
     if holds(low):
         return pressure
     for k in range(TRIALS):
-        high = Held.of(length=length, pressure=pressure + 1e3 * 4.0**k)
+        high = Held.of(length=length, pressure=pressure + FIRST * 4.0**k)
         if holds(high):
             return float(branch_end(problem, high, low, tolerance, shapes).held.get("pressure"))
     return float("nan")
@@ -200,9 +223,9 @@ def working_range(muscle: Muscle, *, pressures: Any) -> xr.Dataset:
     >>> (1e3 * region.shortest.values).round(1), (1e3 * region.longest.values).round(1)  # mm
     (array([32.1]), array([128.8]))
     """
-    step = Step(pressure=pressures, length=1.0)
+    step = Step(pressure=pressures, force=0.0)
     path = Path.parse(pressures, "Pa")
-    found = [limits(muscle, pressure=float(P)) for P in path.sample(step.points)]
+    found = [limits(muscle, pressure=Path((float(P),), unit="Pa")) for P in path.sample(step.points)]
     about = {"muscle": to_toml(muscle, allow_custom=True), "assumed": ", ".join(muscle.assumed)}
     units = {"shortest": "m", "stable_down_to": "m", "longest": "m", "shortest_force": "N", "force_extremum": "N"}
     variables = {

@@ -8,7 +8,7 @@ import numpy as np
 from mckibben.discretise.placement import crowding
 from mckibben.experiments.again import sought_again
 from mckibben.measure import survey as surveying
-from mckibben.measure.caution import thick_wall
+from mckibben.measure.caution import MuscleWarning, thick_wall
 from mckibben.measure.report import Part, report
 from mckibben.measure.survey import survey
 from mckibben.model.parameters import Parameters
@@ -24,20 +24,6 @@ from mckibben.solver.problem import Basis, Problem
 from mckibben.spec import Along, Muscle, Step, Test
 
 __all__ = ["MuscleWarning", "corners", "run", "solved"]
-
-
-class MuscleWarning(UserWarning):
-    """The result stands, but a real muscle may not follow the model there.
-
-    A UserWarning that `run` gives for each caution: a thick wall, fibres that touch, a slender muscle in compression, a
-    fibre that breaks. The result carries them as `cautions`; `solve` does not warn, its state carries them too.
-
-    >>> import warnings
-    >>> warnings.simplefilter("ignore", mk.MuscleWarning)
-    >>> thick = mk.presets.paper().replace("chamber.thickness", "4 mm")
-    >>> mk.run(thick, mk.Isometric(length="115 mm", pressure="0 to 1 bar", points=3)).cautions
-    ('chamber.thickness is 0.32 of the radius: the model takes the wall as thin (below 0.2)',)
-    """
 
 
 def run(

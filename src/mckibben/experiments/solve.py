@@ -15,6 +15,7 @@ from mckibben.search.walk import Look
 from mckibben.solver.bench import Bench
 from mckibben.solver.held import Held
 from mckibben.spec import Muscle, SpecError, Step
+from mckibben.spec.plausible import trusted
 
 __all__ = ["solve"]
 
@@ -23,6 +24,7 @@ def solve(
     muscle: Muscle,
     *,
     length: Any = None,
+    contraction: Any = None,
     force: Any = None,
     pressure: Any = None,
     volume: Any = None,
@@ -36,6 +38,7 @@ def solve(
     Args:
         muscle: the specification.
         length: distance between the fittings [m].
+        contraction: in place of the length: 1 - h/H0, such as "10 %" or 0.1.
         force: axial force [N], positive in tension.
         pressure: gauge pressure [Pa].
         volume: volume inside the braid [m^3].
@@ -56,7 +59,8 @@ def solve(
     >>> mk.solve(mk.presets.paper(), length="130 mm", pressure="1 bar").reason
     'no equilibrium: the fibres are straight at 128.7786 mm, the longest possible length'
     """
-    step = Step(length=length, force=force, pressure=pressure, volume=volume, points=1)
+    given = Step(length=length, contraction=contraction, force=force, pressure=pressure, volume=volume, points=1)  # type: ignore[call-arg]
+    (step,) = given.as_steps(muscle)
     for name in step.controls:
         if getattr(step, name).needs_present:
             raise SpecError(f"solve.{name}", str(getattr(step, name)), "must be one value", "a path needs run()")
@@ -92,7 +96,8 @@ def _last_good(bench: Bench, muscle: Muscle, way: Way) -> State | None:
     if way.end.last is None:
         return None
     held = way.end.held
-    step = Step(**dict(zip(held.names, held.values, strict=True)))
+    with trusted():
+        step = Step(**dict(zip(held.names, held.values, strict=True)))
     return _made(bench, muscle, step, held, way.end.last)
 
 

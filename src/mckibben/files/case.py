@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 import tomllib
 from collections.abc import Iterable
 from os import PathLike
@@ -46,7 +47,7 @@ def read_mapping(path: str | PathLike[str]) -> dict[str, Any]:
     """What the TOML file at `path` says. SpecError, in one line, for a file that cannot be read or is not TOML."""
     name = str(path)
     try:
-        text = Path(path).read_bytes().decode("utf-8")
+        text = Path(path).read_bytes().decode("utf-8-sig")  # some editors put a mark before the text
         return tomllib.loads(text)
     except FileNotFoundError as error:
         raise SpecError(name, allowed="there is no such file") from error
@@ -56,6 +57,18 @@ def read_mapping(path: str | PathLike[str]) -> dict[str, Any]:
         said = f"is not UTF-8 text (byte {error.start})"
         raise SpecError(name, allowed=said, advice="save the file as UTF-8") from error
     except tomllib.TOMLDecodeError as error:  # its message ends in the line and column
-        raise SpecError(name, allowed=f"is not valid TOML: {error}") from error
+        raise SpecError(name, allowed=f"is not valid TOML: {error}", advice=_habit(text, str(error))) from error
     except (RecursionError, ValueError) as error:  # brackets without end; a path with a null character
         raise SpecError(name, allowed="cannot be read") from error
+
+
+def _habit(text: str, said: str) -> str:
+    """Advice on a line that is not TOML, where it is another language's way to write one."""
+    found = re.search(r"at line (\d+)", said)
+    lines = text.splitlines()
+    line = lines[int(found[1]) - 1] if found and 0 < int(found[1]) <= len(lines) else ""
+    if line.partition("#")[0].rstrip().endswith(";"):
+        return 'a line of TOML ends without ";"'
+    if re.search(r"=\s*[+-]?\d+,\d", line):
+        return 'write a decimal point, "12.5 mm"'
+    return ""

@@ -20,6 +20,7 @@ from mckibben.results.result import Result
 from mckibben.results.variables import COORDINATES, FIELDS, VARIABLES, about_variable, dimensions
 from mckibben.spec import Muscle, Test
 from mckibben.spec.errors import SpecError
+from mckibben.spec.plausible import trusted
 from mckibben.spec.text import muscle_from_mapping, test_from_mapping
 
 if TYPE_CHECKING:
@@ -143,10 +144,11 @@ def _array(name: str, variable: xr.DataArray) -> np.ndarray:
 def _specification(name: str, about: dict[str, Any]) -> tuple[Muscle, Test]:
     """Muscle and test, from their TOML text among the attributes."""
     try:
-        return (
-            muscle_from_mapping(tomllib.loads(about.get("muscle", ""))),
-            test_from_mapping(tomllib.loads(about.get("test", ""))),
-        )
+        with trusted():  # a file of an earlier version may say 1.0 for a pressure of 1 Pa
+            return (
+                muscle_from_mapping(tomllib.loads(about.get("muscle", ""))),
+                test_from_mapping(tomllib.loads(about.get("test", ""))),
+            )
     except SpecError as error:
         advice = "its numbers can be read with xarray.open_dataset"
         raise SpecError(name, allowed=f"its muscle or test cannot be built again: {error}", advice=advice) from error

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from os import PathLike
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from mckibben import disk
 from mckibben.spec.errors import SpecError
@@ -14,7 +14,7 @@ if TYPE_CHECKING:
 
 __all__ = ["SUFFIXES", "check_output", "load_result", "save", "suffix_of"]
 
-SUFFIXES = {".nc": "everything, to be loaded again (NetCDF-4)", ".csv": "the table of states"}
+SUFFIXES = {".nc": "everything, to be loaded again (NetCDF-4)", ".csv": "the table of states, with notes beside it"}
 
 
 def suffix_of(path: str | PathLike[str], allowed: dict[str, str] = SUFFIXES) -> str:
@@ -28,15 +28,22 @@ def suffix_of(path: str | PathLike[str], allowed: dict[str, str] = SUFFIXES) -> 
 
 def check_output(path: str | PathLike[str], force: bool = False) -> None:
     """SpecError if `save` to `path` would fail for its name, its folder or a file that is there already."""
-    suffix_of(path)
+    suffix = suffix_of(path)
     disk.check_target(path, force)
+    if suffix == ".csv":
+        from mckibben.files import table
+
+        disk.check_target(table.notes_file(path), force)
 
 
-def save(result: Result, path: str | PathLike[str], force: bool = False) -> Path:
+def save(result: Any, path: str | PathLike[str], force: bool = False) -> Path:
     """Save a result: `.nc` keeps everything and can be loaded again, `.csv` is the table of states.
 
+    A table holds nothing but its head and its rows; what was computed and by what is in a text file beside it
+    ("out.csv.txt").
+
     Args:
-        result: what `run` gave, or the `result` of a `State`.
+        result: what `run` or `solve` gave. Of a `State` its `result` is saved, and that is what `load` gives.
         path: the file; its ending says the format. It is written whole or not at all.
         force: replace a file that is there already.
 
@@ -44,12 +51,14 @@ def save(result: Result, path: str | PathLike[str], force: bool = False) -> Path
         The path of the file.
 
     Raises:
-        SpecError: for another ending, a file that exists (without `force`), or one that cannot be written.
+        SpecError: for what is no result, another ending, a file that exists (without `force`), or one that cannot be
+            written.
 
     >>> curve = mk.run(mk.presets.paper(), mk.Isometric(length="115 mm", pressure="0 to 1 bar", points=3))
     >>> mk.save(curve, "curve.nc").name
     'curve.nc'
     """
+    result = _result(result)
     if suffix_of(path) == ".nc":
         from mckibben.files import netcdf
 
@@ -57,6 +66,20 @@ def save(result: Result, path: str | PathLike[str], force: bool = False) -> Path
     from mckibben.files import table
 
     return table.save_csv(result, path, force)
+
+
+def _result(given: Any) -> Result:
+    from mckibben.results.result import Result, State
+
+    if isinstance(given, State):
+        return given.result
+    if isinstance(given, Result):
+        return given
+    if hasattr(given, "to_netcdf"):
+        raise SpecError(
+            "save", allowed="takes what run or solve gave", advice='write a Dataset with data.to_netcdf("x.nc")'
+        )
+    raise SpecError("save", given, "must be what run or solve gave")
 
 
 def load_result(path: str | PathLike[str]) -> Result:

@@ -1,32 +1,51 @@
-"""Results as CSV tables: one row per state, preceded by comment lines that say what was computed and by what."""
+"""Results as CSV tables, one row per state; a text file beside a table says what was computed and by what."""
 
 from __future__ import annotations
 
 import csv
 import io
-from collections.abc import Iterator
-from os import PathLike
+from collections.abc import Iterable, Iterator
+from os import PathLike, fspath
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
 
 from mckibben import disk
 from mckibben.results.result import Result
 from mckibben.results.sensitivity import Sensitivity
-from mckibben.results.variables import STEP
+from mckibben.results.variables import EXTREMES, STEP
 
-__all__ = ["rows", "save_csv", "save_sensitivity"]
+__all__ = ["COLUMNS", "map_csv", "map_rows", "notes_file", "rows", "save_csv", "save_sensitivity"]
+
+if TYPE_CHECKING:
+    from xarray import Dataset
+
+COLUMNS = STEP | EXTREMES
+"""Variables of a table: unit and meaning."""
+
+
+def notes_file(path: str | PathLike[str]) -> Path:
+    """The file beside a table that says what was computed and by what: out.csv.txt beside out.csv."""
+    return Path(f"{fspath(path)}.txt")
 
 
 def save_csv(result: Result, path: str | PathLike[str], force: bool = False) -> Path:
     """Write the variables per state as a table in SI units, NaN as an empty cell. It cannot be loaded as a result."""
     text = io.StringIO(newline="")
-    for line in _comments(result):
-        text.write(f"# {line}".rstrip() + "\n")
     writer = csv.writer(text, lineterminator="\n")
-    writer.writerow(["state", *(_header(name) for name in STEP)])
+    writer.writerow(["state", *(_header(name, unit) for name, (unit, _) in COLUMNS.items())])
     for state, row in enumerate(rows(result)):
-        writer.writerow([state, *(_cell(row[name]) for name in STEP)])
-    return disk.write(path, text.getvalue().encode("utf-8"), force)
+        writer.writerow([state, *(_cell(row[name]) for name in COLUMNS)])
+    return _write(path, _comments(result), text.getvalue(), force)
+
+
+def _write(path: str | PathLike[str], notes: Iterable[str], text: str, force: bool) -> Path:
+    """A table that any program reads, and the notes on it in a file beside it."""
+    disk.check_target(path, force)
+    told = "".join(f"{line}".rstrip() + "\n" for line in notes)
+    disk.write(notes_file(path), told.encode("utf-8"), force)
+    return disk.write(path, text.encode("utf-8"), force)
 
 
 def save_sensitivity(found: Sensitivity, path: str | PathLike[str], force: bool = False) -> Path:
@@ -37,8 +56,6 @@ def save_sensitivity(found: Sensitivity, path: str | PathLike[str], force: bool 
     lines += [about["angles"], f"assumed, not measured: {about['assumed'] or 'nothing'}"]
     for table in ("muscle", "test"):
         lines += ["", f"the {table} (TOML):", *about[table].splitlines()]
-    for line in [*lines, ""]:
-        text.write(f"# {line}".rstrip() + "\n")
     results = [str(name) for name in data["result"].values]
     header = ["number", "value", "unit", "assumed", *(f"{name} [% per %]" for name in results)]
     units = dict(zip(results, data["result_unit"].values.tolist(), strict=True))
@@ -48,19 +65,45 @@ def save_sensitivity(found: Sensitivity, path: str | PathLike[str], force: bool 
         known = [data[f"number{part}"].values[k].item() for part in ("", "_value", "_unit", "_assumed")]
         shares = [*data["relative"].values[k].tolist(), *data["absolute"].values[k].tolist()]
         writer.writerow([*map(_cell, known), *(_cell(None if share != share else share) for share in shares)])
-    return disk.write(path, text.getvalue().encode("utf-8"), force)
+    return _write(path, lines, text.getvalue(), force)
 
 
 def rows(result: Result) -> Iterator[dict[str, Any]]:
-    """The variables of each state as plain Python values in SI units, None for NaN."""
-    columns = {name: result.column(name).tolist() for name in STEP}
+    """The variables of each state, and the extremes of its fields, as plain Python values in SI, None for NaN."""
+    columns = {name: result.column(name).tolist() for name in STEP} | _extremes(result)
     for state in range(len(result)):
         values = {name: column[state] for name, column in columns.items()}
         yield {name: None if value != value else value for name, value in values.items()}
 
 
-def _header(name: str) -> str:
-    unit = STEP[name][0]
+def map_rows(data: Dataset, units: bool = True) -> list[dict[str, Any]]:
+    """The points of a force map or a working range as plain values in SI, None for NaN; with `units` in their names."""
+    frame = data.to_dataframe().reset_index()
+    if units:
+        known = {str(name): str(item.attrs.get("units", "")) for name, item in data.variables.items()}
+        frame = frame.rename(columns={name: _header(name, known.get(name, "")) for name in frame.columns})
+    records: list[dict[str, Any]] = frame.to_dict("records")
+    return [{name: None if value != value else value for name, value in row.items()} for row in records]
+
+
+def map_csv(data: Dataset) -> str:
+    """A force map or a working range as a CSV table in SI units."""
+    text, records = io.StringIO(newline=""), map_rows(data)
+    writer = csv.writer(text, lineterminator="\n")
+    writer.writerow(records[0])
+    writer.writerows([_cell(value) for value in row.values()] for row in records)
+    return text.getvalue()
+
+
+def _extremes(result: Result) -> dict[str, list[float]]:
+    """`EXTREMES` of every state, NaN where there are none."""
+    tension, strength = result.column("fibre_tension").max(axis=1), result.muscle.braid.fibre.breaking_force
+    pulled = np.where(tension > 0.0, tension, np.nan)
+    found = (2.0 * result.column("r").max(axis=1), tension, (np.nan if strength is None else strength) / pulled)
+    return {name: values.tolist() for name, values in zip(EXTREMES, found, strict=True)}
+
+
+def _header(name: str, unit: str) -> str:
     return f"{name} [{unit}]" if unit not in ("", "1") else name
 
 

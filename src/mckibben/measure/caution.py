@@ -17,8 +17,25 @@ from mckibben.model.wrinkling import wrinkling
 from mckibben.spec import Muscle, SpecError, Step
 from mckibben.units import show
 
+
+class MuscleWarning(UserWarning):
+    """The result stands, but a real muscle may not follow the model there.
+
+    A UserWarning that `run` gives for each caution: a thick wall, fibres that touch, a slender muscle in compression, a
+    fibre that breaks. The result carries them as `cautions`; `solve` does not warn, its state carries them too.
+
+    >>> import warnings
+    >>> warnings.simplefilter("ignore", mk.MuscleWarning)
+    >>> thick = mk.presets.paper().replace("chamber.thickness", "4 mm")
+    >>> mk.run(thick, mk.Isometric(length="115 mm", pressure="0 to 1 bar", points=3)).cautions
+    ('chamber.thickness is 0.32 of the radius: the model takes the wall as thin (below 0.2)',)
+    """
+
+
 THICK_WALL = 0.2
 """Wall over radius above which a thin wall is a coarse assumption: stretches vary by about this much across it."""
+STRONG = 1e7
+"""Pressure [Pa] above what built muscles hold; hydraulic ones work up to some 50 bar."""
 SLENDER = 5.0
 """Length over diameter above which a muscle in compression may bow like a column."""
 
@@ -28,8 +45,8 @@ Columns = dict[str, np.ndarray]
 def cautions(muscle: Muscle, *, length: Any, pressure: Any) -> tuple[str, ...]:
     """Cautions about a target before anything is solved, judged by the uniform cylinder of the target length.
 
-    Thick wall, wrinkling, jammed fibres, a column in compression, and fibre tension above the breaking force if one is
-    given. A result carries the cautions of its own states.
+    Thick wall, wrinkling, jammed fibres, a column in compression, fibre tension above the breaking force if one is
+    given, and a pressure above 100 bar. A result carries the cautions of its own states.
 
     Args:
         muscle: the specification.
@@ -102,8 +119,8 @@ def thick_wall(muscle: Muscle) -> list[str]:
 
 
 def after(muscle: Muscle, steps: Columns, fields: Columns) -> list[str]:
-    """Cautions that a result gives rise to: jamming, column buckling, broken fibres; each with its first state."""
-    return [*jamming(muscle, steps, fields), *column(steps, fields), *breaking(muscle, steps, fields)]
+    """Cautions that a result gives rise to: jamming, column buckling, broken fibres, pressure; with the first state."""
+    return [*jamming(muscle, steps, fields), *column(steps, fields), *breaking(muscle, steps, fields), *strong(steps)]
 
 
 def jamming(muscle: Muscle, steps: Columns, fields: Columns) -> list[str]:
@@ -129,6 +146,12 @@ def breaking(muscle: Muscle, steps: Columns, fields: Columns) -> list[str]:
         return []
     said = f"the fibre tension exceeds the breaking force of {show(strength, 'N', 4)}"
     return _first((fields["fibre_tension"] > strength).any(axis=1), steps, said)
+
+
+def strong(steps: Columns) -> list[str]:
+    """A pressure that no muscle was built for, so that most likely the unit is wrong."""
+    said = f"the pressure is above {show(STRONG, 'Pa')}, more than built muscles hold; the model knows no bursting"
+    return _first(steps["pressure"] > STRONG, steps, said)
 
 
 def _first(hit: Any, steps: Columns, said: str) -> list[str]:

@@ -41,14 +41,17 @@ _CYLINDER: dict[str, Any] = {"color": style.BLUE, "linewidth": 1.1, "linestyle":
 def read_measured(path: str | os.PathLike[str], field: str = "measured") -> tuple[np.ndarray, np.ndarray]:
     """Columns `pressure` (bar) and `value` (N, or change of length over length) of a CSV file with a header."""
     try:
-        with open(path, newline="", encoding="utf-8") as file:
-            rows = list(csv.DictReader(file))
+        with open(path, newline="", encoding="utf-8-sig") as file:
+            lines = [line for line in file if line.strip() and not line.startswith("#")]
+        separator = ";" if lines and ";" in lines[0] else ","  # as spreadsheets write where "," is decimal
+        rows = list(csv.DictReader(lines, delimiter=separator))
         table = np.array([[float(row["pressure"]), float(row["value"])] for row in rows])
     except OSError as error:
         raise SpecError(field, str(path), f"cannot be read: {error.strerror or error}") from error
     except (KeyError, TypeError, ValueError) as error:
         said = "must be a CSV file with columns pressure (bar) and value"
-        raise SpecError(field, str(path), said, "the first line names the columns") from error
+        advice = "the first line names the columns; numbers have a decimal point"
+        raise SpecError(field, str(path), said, advice) from error
     if not len(table) or not np.isfinite(table).all():
         raise SpecError(field, str(path), "must hold at least one row of finite numbers")
     return table[:, 0], table[:, 1]

@@ -231,6 +231,12 @@ class State:
         return self._number("error_estimate")
 
     def __repr__(self) -> str:
+        if self.length != self.length:  # nothing was found: say what was asked for, and why
+            asked = (
+                (name, getattr(self.result.test, name, None)) for name in ("length", "force", "pressure", "volume")
+            )
+            given = " and ".join(f"{name} {path}" for name, path in asked if path is not None)
+            return f"<State: {self.verdict}, asked for {given}: {self.reason.removeprefix(f'{self.verdict}: ')}>"
         numbers = (
             f"force {self.force:.6g} N, length {1e3 * self.length:.6g} mm, pressure {1e-5 * self.pressure:.6g} bar"
         )

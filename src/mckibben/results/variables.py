@@ -62,6 +62,13 @@ OBSERVED: dict[str, tuple[str, str]] = {
 }  # fmt: skip
 """Results of one state that have derivatives: unit and meaning."""
 
+EXTREMES: dict[str, tuple[str, str]] = {
+    "largest_diameter": ("m", "largest diameter of the braid along the length"),
+    "peak_fibre_tension": OBSERVED["peak_fibre_tension"],
+    "safety_factor": ("1", "breaking force of a fibre over its largest tension"),
+}
+"""What tables show of a state's fields: unit and meaning. A muscle without a breaking force has no safety factor."""
+
 VARIABLES = STEP | FIELDS
 COORDINATES = {"step": ("", "state"), "v": ("m", "axial material coordinate")}
 

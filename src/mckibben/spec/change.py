@@ -8,6 +8,9 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping
 from typing import Any
 
+from mckibben.spec.angle import anew
+from mckibben.spec.contraction import DECLARED as CONTRACTION
+from mckibben.spec.contraction import takes_it
 from mckibben.spec.declared import describe, evolved, walk
 from mckibben.spec.errors import SpecError, nearest
 
@@ -16,7 +19,7 @@ __all__ = ["CHANGED", "changed", "changed_muscle", "changed_name", "left_behind"
 CHANGED = " (changed)"
 """Added to the name of a muscle that is no longer what its name says."""
 
-_FIBRE = "braid.fibre."
+_FIBRE, _ANGLE = "braid.fibre.", "braid.angle"
 _STIFFNESSES, _MATERIAL = ("B1", "B2", "B3"), ("E", "nu")
 
 
@@ -24,7 +27,8 @@ def changed_muscle(muscle: Any, values: Mapping[str, Any]) -> Any:
     """The muscle with all of `values` put in at once.
 
     What was changed, and all within it, leaves `assumed`; the name says that the muscle was changed. Giving B1, B2, B3
-    replaces a fibre's E and nu, and the other way round. SpecError for an unknown name, or values that cannot be.
+    replaces a fibre's E and nu, and the other way round. An angle is measured from what the muscle's own was given
+    from. SpecError for an unknown name, or values that cannot be.
     """
     given = dict(values)
     if "assumed" not in values:
@@ -37,9 +41,11 @@ def changed_muscle(muscle: Any, values: Mapping[str, Any]) -> Any:
 def changed(owner: Any, values: Mapping[str, Any], prefix: str = "") -> Any:
     """A copy of a spec object, or a tuple of them, with `values` put in at once, inner ones first."""
     new, inner = _grouped(values)
+    if "contraction" in new and takes_it(owner):
+        new["length"] = CONTRACTION.read(new.pop("contraction"), f"{prefix}contraction", CONTRACTION)
     if isinstance(owner, tuple):
         return tuple(changed(part, inner.get(str(k), {}), f"{prefix}{k}.") for k, part in enumerate(owner))
-    known = {item.name: item.kind for item in describe(type(owner)) if item.stored}
+    known = {item.name: item.kind for item in describe(type(owner))}
     for head in (*new, *inner):
         if head not in known or (head in inner and known[head] not in ("part", "steps")):
             full = prefix + next(name for name in values if name.partition(".")[0] == head)
@@ -53,6 +59,8 @@ def changed(owner: Any, values: Mapping[str, Any], prefix: str = "") -> Any:
                 f"{prefix}{head}.{name}", value, f"this muscle has no {head}", f"give the whole {head} first"
             )
         new[head] = changed(part, some, f"{prefix}{head}.")
+    if "angle_from" in known:
+        new = anew(owner, new)
     return evolved(owner, **dict.fromkeys(left_behind(new, prefix)), **new)
 
 
@@ -81,6 +89,7 @@ def left_behind(given: Iterable[Any], prefix: str) -> tuple[str, ...]:
 def still_assumed(assumed: Iterable[str], given: Iterable[str]) -> tuple[str, ...]:
     """Names of assumed fields that are neither given, nor within what is given, nor left behind by it."""
     said = list(given)
+    said += [_ANGLE for name in said if name == f"{_ANGLE}_from"]
     inside = [name.removeprefix(_FIBRE) for name in said if name.startswith(_FIBRE)]
     said += [_FIBRE + name for name in left_behind(inside, _FIBRE)]
     return tuple(name for name in assumed if not any(name == field or name.startswith(field + ".") for field in said))

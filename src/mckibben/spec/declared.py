@@ -10,9 +10,11 @@ from typing import TYPE_CHECKING, Any, Generic, TypeVar
 
 import attrs
 
-from mckibben.units import Number, show
+from mckibben.spec.angle import as_written
+from mckibben.spec.plausible import Doubt, trusted
+from mckibben.units import Number, is_traced, show
 
-__all__ = ["Declared", "Reads", "as_call", "declare", "describe", "evolved", "numbers", "walk"]
+__all__ = ["Declared", "Reads", "as_call", "declare", "describe", "evolved", "in_own_words", "numbers", "walk"]
 
 T = TypeVar("T")
 V = TypeVar("V")
@@ -49,7 +51,11 @@ class Declared:
     parts: tuple[type, ...] = ()
     options: tuple[str, ...] = ()
     stored: bool = True
-    """False for a field that only says how another is read (angle_from)."""
+    """False for a field that only says how another is read (angle_from); it may be given anew all the same."""
+    doubt: Doubt | None = None
+    """Sizes of a bare number that are absurd in SI and plausible in the usual unit."""
+    explain: Callable[[float], str] | None = attrs.field(default=None, repr=False)
+    """Says a value in full where the plain number is open to mistakes."""
     static: bool = False
     """True for a number that decides what is computed (how many states) and cannot be varied a little."""
 
@@ -72,6 +78,10 @@ class Declared:
     def text(self, value: float) -> str:
         return f"{value:.0f}" if self.kind == "count" else show(value, self.display or self.unit)
 
+    def explained(self, value: float) -> str:
+        """A value as text, with what it may be mistaken for: an angle is shown in both conventions."""
+        return self.text(value) if self.explain is None or is_traced(value) else self.explain(value)
+
     def contains(self, value: float) -> bool:
         """Whether an SI value is in range; NaN is in no range."""
         above = value > self.low if self.low_open else value >= self.low
@@ -93,8 +103,18 @@ def declare(declared: Declared) -> Any:
 
 def evolved(value: T, **changes: Any) -> T:
     """A copy of a spec object with some fields changed; the new values are read and checked as when it was made."""
-    copy: T = attrs.evolve(value, **changes)  # type: ignore[misc]  # made by attrs inside `spec`
+    kinds = {item.name: item for item in describe(type(value))}
+    read = {name: _read_again(value, kinds.get(name), new) for name, new in changes.items()}
+    with trusted():  # what stays was read before
+        copy: T = attrs.evolve(value, **read)  # type: ignore[misc]  # made by attrs inside `spec`
     return copy
+
+
+def _read_again(owner: Any, declared: Declared | None, new: Any) -> Any:
+    """A new value as its field reads it, by itself."""
+    if declared is None or new is None or declared.kind not in ("quantity", "path", "held"):
+        return new
+    return declared.read(new, f"{owner.__spec_path__}.{declared.name}", declared)
 
 
 def describe(cls: type) -> tuple[Declared, ...]:
@@ -140,19 +160,38 @@ def numbers(value: Any, prefix: str = "") -> Iterator[tuple[str, Declared, Numbe
         elif declared.kind in ("quantities", "path", "held"):
             several = item if declared.kind == "quantities" else item.waypoints
             single = declared.kind != "quantities" and len(several) == 1
+            if declared.kind != "quantities" and item.called(declared.name) != declared.name:
+                name = f"{prefix}{item.called(declared.name)}"
+                declared = attrs.evolve(declared, unit=item.unit, display="", meaning="contraction 1 - h/H0")
             for index, number in enumerate(several):
                 yield name if single else f"{name}[{index}]", declared, number
 
 
 def as_call(self: Any) -> str:
-    """A spec object as the Python call that makes it, in display units; fields that are None or empty are left out."""
+    """A spec object as the Python call that makes it, in display units; fields that are None or empty are left out.
+
+    What its class has to remark comes after it, as a comment.
+    """
+    remark = self.__remark__() if hasattr(self, "__remark__") else ""
+    return _call(self) + (f"  # {remark}" if remark else "")
+
+
+def in_own_words(value: Any) -> dict[str, Any]:
+    """The fields of a spec object that say it: those that are stored, an angle as the braid's own words have it."""
+    names = [declared.name for declared in describe(type(value)) if declared.stored]
+    said = {name: getattr(value, name) for name in names}
+    return said | as_written(said["angle"], value.measured_from) if hasattr(value, "measured_from") else said
+
+
+def _call(self: Any) -> str:
     parts = []
+    own = in_own_words(self)
     for declared in describe(type(self)):
-        value = getattr(self, declared.name)
+        value = own.get(declared.name)
         if declared.kind == "quantity" and isinstance(value, float) and declared.unit != "1":
             value = show(value, declared.display or declared.unit, digits=12)
         elif isinstance(value, StrEnum):
             value = str(value)
-        if declared.stored and value is not None and not (isinstance(value, tuple) and not value):
-            parts.append(f"{declared.name}={value!r}")
+        if value is not None and not (isinstance(value, tuple) and not value):
+            parts.append(f"{declared.name}={_call(value) if declared.kind == 'part' else repr(value)}")
     return f"{type(self).__name__}({', '.join(parts)})"

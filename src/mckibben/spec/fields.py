@@ -16,6 +16,7 @@ import attrs
 
 from mckibben.spec.declared import Declared, as_call, declare
 from mckibben.spec.errors import SpecError, near
+from mckibben.spec.plausible import Doubt, reading
 from mckibben.units import DISPLAY, Number, UnitError, is_traced, to_si
 
 __all__ = ["choice", "count", "part", "quantities", "quantity", "read_quantity", "spec", "spec_classes", "words"]
@@ -30,8 +31,13 @@ def read_quantity(value: Any, field: str, declared: Declared) -> Number:
         number = to_si(value, declared.unit)
     except UnitError as error:
         raise SpecError(field, value, str(error), error.advice) from error
-    if not is_traced(number) and not declared.contains(number):
-        raise SpecError(field, value, f"must be {declared.allowed}", declared.advice)
+    if is_traced(number):
+        return number
+    meant = reading([value], declared.unit, declared.doubt)
+    if not declared.contains(number):
+        raise SpecError(field, value, f"must be {declared.allowed}", meant or declared.advice)
+    if meant:
+        raise SpecError(field, value, "a number without a unit is in SI", meant)
     return number
 
 
@@ -47,13 +53,15 @@ def quantity(
     source: str = "",
     advice: str = "",
     default: Any = attrs.NOTHING,
+    explain: Callable[[float], str] | None = None,
+    doubt: Doubt | None = None,
 ) -> Any:
     """A number with an SI unit ("1" for none). With `default=None` the field may be left out."""
     return declare(
         Declared(
             kind="quantity", read=read_quantity, unit=unit, meaning=meaning, low=low, high=high, low_open=low_open,
             high_open=high_open, display=display or DISPLAY.get(unit, ""), source=source, advice=advice,
-            default=default,
+            default=default, explain=explain, doubt=doubt,
         )
     )  # fmt: skip
 

@@ -10,12 +10,15 @@ from enum import StrEnum
 from typing import Any, ClassVar
 
 import attrs
+import numpy as np
 
-from mckibben.spec.declared import Declared, Reads, declare
+from mckibben.spec.contraction import lengths, takes_contraction
+from mckibben.spec.declared import Declared, Reads, declare, evolved
 from mckibben.spec.errors import SpecError
 from mckibben.spec.fields import choice, count, spec
 from mckibben.spec.muscle import Muscle
 from mckibben.spec.path import Path, PathMode
+from mckibben.spec.plausible import CONTROLLED, reading
 from mckibben.units import DISPLAY, UnitError, is_traced
 
 __all__ = [
@@ -32,16 +35,23 @@ __all__ = [
 
 ATMOSPHERE = 101325.0
 """Standard atmosphere [Pa]: no gauge pressure is below minus this."""
+HIGHEST = 1e9
+"""Highest gauge pressure taken [Pa]: 10,000 bar, ten times what any vessel of a workshop holds."""
 
 
 def _read_path(value: Any, field: str, declared: Declared) -> Path:
     try:
-        path = Path.parse(value, declared.unit)
+        as_contraction = isinstance(value, Path) and value.unit == "1" and declared.unit == "m"
+        path = value if as_contraction else Path.parse(value, declared.unit)
     except UnitError as error:
         raise SpecError(field, value, str(error), error.advice) from error
+    given = () if isinstance(value, Path) else value if isinstance(value, (list, tuple, np.ndarray)) else (value,)
+    meant = reading(list(given), declared.unit, declared.doubt)
     for waypoint in path.waypoints:
-        if not is_traced(waypoint) and not declared.contains(waypoint):
-            raise SpecError(field, value, f"must be {declared.allowed}", declared.advice)
+        if not is_traced(waypoint) and not as_contraction and not declared.contains(waypoint):
+            raise SpecError(field, value, f"must be {declared.allowed}", meant or declared.advice)
+    if meant:
+        raise SpecError(field, value, "a number without a unit is in SI", meant)
     if declared.kind == "held" and path.mode != PathMode.CONSTANT:
         raise SpecError(field, value, "must be one value", f"this test holds its {field.rpartition('.')[2]}")
     return path
@@ -50,16 +60,20 @@ def _read_path(value: Any, field: str, declared: Declared) -> Path:
 _QUANTITIES: dict[str, dict[str, Any]] = {
     "length": {"unit": "m", "meaning": "distance between the fittings", "low": 0.0, "low_open": True},
     "force": {"unit": "N", "meaning": "axial force, > 0 where the muscle pulls its fittings together"},
-    "pressure": {"unit": "Pa", "meaning": "gauge pressure", "low": -ATMOSPHERE, "advice": "pressure is gauge"},
+    "pressure": {
+        "unit": "Pa", "meaning": "gauge pressure", "low": -ATMOSPHERE, "high": HIGHEST, "advice": "pressure is gauge",
+    },
     "volume": {"unit": "m^3", "meaning": "volume inside the braid", "low": 0.0, "low_open": True},
-}
+}  # fmt: skip
 
 
 def controlled(name: str, *, held: bool = False, default: Any = attrs.NOTHING) -> Any:
     """A field for one of the controlled quantities; with `held` only one value is allowed."""
     display = DISPLAY.get(_QUANTITIES[name]["unit"], "")
-    kind = "held" if held else "path"
-    return declare(Declared(kind=kind, read=_read_path, default=default, display=display, **_QUANTITIES[name]))
+    kind, doubt = "held" if held else "path", CONTROLLED.get(_QUANTITIES[name]["unit"])
+    return declare(
+        Declared(kind=kind, read=_read_path, default=default, display=display, doubt=doubt, **_QUANTITIES[name])
+    )
 
 
 DEFAULT_POINTS = 21
@@ -109,6 +123,7 @@ class Along(StrEnum):
     BRANCH = "branch"
 
 
+@takes_contraction
 @spec("step")
 class Step:
     """Part of a test with any two of length, force, pressure and volume controlled, or length or force and the gas.
@@ -118,9 +133,9 @@ class Step:
     value ("to 20 N") or at it ("hold").
 
     Args:
-        length: distance between the fittings [m], above 0.
+        length: distance between the fittings [m], above 0; or contraction="10 %" in its place, 1 - h/H0.
         force: axial force [N], positive where the muscle pulls its fittings together.
-        pressure: gauge pressure [Pa], not below minus one atmosphere (-101325 Pa).
+        pressure: gauge pressure [Pa], not below minus one atmosphere (-101325 Pa) nor above 10,000 bar.
         volume: volume inside the braid [m^3], above 0.
         gas: "isothermal" or "adiabatic": the gas inside as the step begins is sealed in, and pressure and volume follow
             its law. In place of one of the two quantities; the other is length or force.
@@ -165,9 +180,17 @@ class Step:
         return tuple(name for name in _QUANTITIES if getattr(self, name) is not None)
 
     def as_steps(self, muscle: Muscle) -> tuple[Step, ...]:
-        return (self,)
+        return (_in_lengths(self, muscle),)
 
 
+def _in_lengths(step: Step, muscle: Muscle) -> Step:
+    """A step with lengths in place of contractions, as they are for a muscle."""
+    if step.length is None or step.length.unit == "m":
+        return step
+    return evolved(step, length=lengths(step.length, muscle.braid.length))
+
+
+@takes_contraction
 @spec("isometric")
 class Isometric:
     """Length held, pressure varied.
@@ -175,7 +198,7 @@ class Isometric:
     The paper's tests a and b (section III). It gives the force; pressures are visited in the order given.
 
     Args:
-        length: distance between the fittings [m], one value.
+        length: distance between the fittings [m], one value; or contraction="10 %" in its place, 1 - h/H0.
         pressure: gauge pressure [Pa]: a ramp such as "0 to 1 bar", a list, or one value.
         points: number of states; by default 21 on a ramp, as many as a list has, 1 for one value.
 
@@ -196,9 +219,10 @@ class Isometric:
         _settle_points(self)
 
     def as_steps(self, muscle: Muscle) -> tuple[Step, ...]:
-        return (Step(length=self.length, pressure=self.pressure, points=self.points),)
+        return (_in_lengths(Step(length=self.length, pressure=self.pressure, points=self.points), muscle),)
 
 
+@takes_contraction
 @spec("isobaric")
 class Isobaric:
     """Pressure held, length varied.
@@ -207,7 +231,8 @@ class Isobaric:
 
     Args:
         pressure: gauge pressure [Pa], one value.
-        length: distance between the fittings [m]: a ramp such as "115 mm to 60 mm", a list, or one value.
+        length: distance between the fittings [m]: a ramp such as "115 mm to 60 mm", a list, or one value; or in its
+            place contraction="0 to 25 %", 1 - h/H0.
         points: number of states; by default 21 on a ramp, as many as a list has, 1 for one value.
 
     Raises:
@@ -227,7 +252,7 @@ class Isobaric:
         _settle_points(self)
 
     def as_steps(self, muscle: Muscle) -> tuple[Step, ...]:
-        return (Step(length=self.length, pressure=self.pressure, points=self.points),)
+        return (_in_lengths(Step(length=self.length, pressure=self.pressure, points=self.points), muscle),)
 
 
 @spec("isotonic")
@@ -261,13 +286,15 @@ class Isotonic:
         return (Step(force=self.force, pressure=self.pressure, points=self.points),)
 
 
+@takes_contraction
 @spec("blocked-force")
 class BlockedForce:
     """Length held at the braid's own (or another), pressure varied: the most the muscle can pull.
 
     Args:
         pressure: gauge pressure [Pa]: a ramp such as "0 to 1 bar", a list, or one value.
-        length: distance between the fittings [m], one value; by default the length H0 of the braid as made.
+        length: distance between the fittings [m], one value; by default the length H0 of the braid as made. Or
+            contraction="10 %" in its place, 1 - h/H0.
         points: number of states; by default 21 on a ramp, as many as a list has, 1 for one value.
 
     Raises:
@@ -287,8 +314,8 @@ class BlockedForce:
         _settle_points(self)
 
     def as_steps(self, muscle: Muscle) -> tuple[Step, ...]:
-        length = muscle.braid.length if self.length is None else self.length
-        return (Step(length=length, pressure=self.pressure, points=self.points),)
+        length = Path((muscle.braid.length,), unit="m") if self.length is None else self.length
+        return (_in_lengths(Step(length=length, pressure=self.pressure, points=self.points), muscle),)
 
 
 @spec("free-contraction")
@@ -350,7 +377,7 @@ class Protocol:
     )
 
     def as_steps(self, muscle: Muscle) -> tuple[Step, ...]:
-        return self.steps
+        return tuple(_in_lengths(step, muscle) for step in self.steps)
 
 
 Test = Isometric | Isobaric | Isotonic | BlockedForce | FreeContraction | Protocol | Step

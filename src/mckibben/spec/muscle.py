@@ -6,6 +6,9 @@ import math
 from enum import StrEnum
 from typing import Any
 
+import attrs
+
+from mckibben.spec.angle import AngleFrom, both_ways, from_parallels, tendency
 from mckibben.spec.change import changed_muscle
 from mckibben.spec.declared import Reads, walk
 from mckibben.spec.errors import SpecError, nearest
@@ -13,7 +16,7 @@ from mckibben.spec.fields import choice, count, part, quantity, spec, words
 from mckibben.spec.laws import LAWS, Law
 from mckibben.units import Number, is_traced, show
 
-__all__ = ["AngleFrom", "Braid", "Chamber", "Ends", "Fibre", "Muscle", "Natural"]
+__all__ = ["Braid", "Chamber", "Ends", "Fibre", "Muscle", "Natural"]
 
 
 class Ends(StrEnum):
@@ -42,13 +45,6 @@ class Natural(StrEnum):
 
     HELICAL = "helical"
     STRAIGHT = "straight"
-
-
-class AngleFrom(StrEnum):
-    """What the braid angle is measured from: the parallels (circles around the tube) or the tube's axis."""
-
-    PARALLELS = "parallels"
-    AXIS = "axis"
 
 
 _ROUND = ("diameter", "E", "nu")
@@ -86,7 +82,7 @@ class Fibre:
     """
 
     diameter: Reads[float | None] = quantity(
-        "m", meaning="diameter of the round solid fibre", low=0.0, low_open=True, default=None
+        "m", meaning="diameter of the round solid fibre", low=0.0, low_open=True, default=None, doubt=(0.05, 50.0)
     )
     E: Reads[float | None] = quantity(
         "Pa", meaning="Young's modulus", low=0.0, low_open=True, display="GPa", default=None
@@ -148,7 +144,8 @@ class Braid:
         fibres: number N of fibres, both hands together: even.
         fibre: what one fibre is, a `Fibre`.
         angle_from: "axis" if the angle given is measured from the tube's axis, as in many other papers. It is
-            converted: the `angle` of the braid is always from the parallels.
+            converted: the `angle` of the braid is always from the parallels. What it was given from is remembered
+            (`measured_from`): an angle given anew, by `Muscle.replace` or a sweep, means the same.
 
     Raises:
         SpecError: for a value out of range, an odd number of fibres, or fibres so thick that they do not fit side by
@@ -161,13 +158,17 @@ class Braid:
     """
 
     radius: Reads[float] = quantity(
-        "m", meaning="radius R0 of the fibres' centre lines", low=0.0, low_open=True, source="Eq. (11)"
+        "m", meaning="radius R0 of the fibres' centre lines", low=0.0, low_open=True, source="Eq. (11)",
+        doubt=(1.0, 1e3),
+    )  # fmt: skip
+    length: Reads[float] = quantity(
+        "m", meaning="length H0 between the fittings", low=0.0, low_open=True, doubt=(10.0, 1e4)
     )
-    length: Reads[float] = quantity("m", meaning="length H0 between the fittings", low=0.0, low_open=True)
     angle: Reads[float] = quantity(
         "rad", meaning="braid angle theta0 between fibres and parallels", low=0.0, low_open=True, high=math.pi / 2.0,
         high_open=True, source="Eq. (11)",
-        advice='give the angle from the parallels, or set angle_from = "axis"',
+        advice='give the angle from the parallels, or set angle_from = "axis"', explain=both_ways,
+        doubt=(math.pi / 2.0, 90.0),
     )  # fmt: skip
     fibres: Reads[int] = count(
         meaning="number N of fibres, both hands together; even", low=2, high=100_000, advice="count both hands"
@@ -176,14 +177,22 @@ class Braid:
     angle_from: Reads[AngleFrom] = choice(
         AngleFrom, meaning="what the given angle is measured from", default=AngleFrom.PARALLELS, stored=False
     )
+    measured_from: Any = attrs.field(default=None, eq=False)
+    """What the angle was given from, an `AngleFrom`: the words of whoever made the braid, beside its numbers."""
 
     def __attrs_post_init__(self) -> None:
-        if self.angle_from == AngleFrom.AXIS:
-            object.__setattr__(self, "angle", math.pi / 2.0 - self.angle)
-            object.__setattr__(self, "angle_from", AngleFrom.PARALLELS)
+        if self.measured_from is None:
+            object.__setattr__(self, "measured_from", self.angle_from)
+        object.__setattr__(self, "angle", from_parallels(self.angle, self.angle_from))
+        object.__setattr__(self, "angle_from", AngleFrom.PARALLELS)
         if not is_traced(self.fibres) and self.fibres % 2:
             raise SpecError("braid.fibres", self.fibres, "must be even", "half of the fibres wind each way")
         self._check_room()
+
+    def __remark__(self) -> str:
+        """What the angle means, both ways, for those who measure it the other way."""
+        known = isinstance(self.angle, float) and 0.0 < self.angle < math.pi / 2.0
+        return f"{both_ways(self.angle)}: {tendency(self.angle)}" if known else ""
 
     def _check_room(self) -> None:
         """Raise unless neighbours of one hand, 2 pi R0 sin(theta0)/(N/2) apart, are at least a diameter apart."""
@@ -226,7 +235,7 @@ class Chamber:
     """
 
     thickness: Reads[float] = quantity(
-        "m", meaning="wall thickness t0 as made", low=0.0, low_open=True, source="Eq. (26)"
+        "m", meaning="wall thickness t0 as made", low=0.0, low_open=True, source="Eq. (26)", doubt=(0.1, 100.0)
     )
     law: Law = part(*LAWS.values(), meaning="hyperelastic law of the elastomer")
 
@@ -270,12 +279,17 @@ class Muscle:
             if field not in known:
                 raise SpecError("muscle.assumed", field, "is no field of this muscle", nearest(field, known))
 
+    def __remark__(self) -> str:
+        """What the braid angle means."""
+        return self.braid.__remark__()
+
     def replace(self, field: str, value: Any) -> Muscle:
         """A new muscle with one field changed: muscle.replace("braid.angle", "36 deg").
 
         Args:
             field: dotted name of the field, or of a whole part ("chamber.law").
-            value: the new value, as the field itself takes it.
+            value: the new value, as the field itself takes it. An angle is measured from what this muscle's own was
+                given from; with "braid.angle_from" the number stays, and is measured from there.
 
         Returns:
             A new muscle. The field and all within it are no longer `assumed`, and " (changed)" is added to the name.

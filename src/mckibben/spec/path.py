@@ -10,6 +10,7 @@ import attrs
 import numpy as np
 from numpy.typing import NDArray
 
+from mckibben.spec.plausible import CONTROLLED, as_text
 from mckibben.units import Number, UnitError, is_traced, show, split, to_si
 
 __all__ = ["Path", "PathMode"]
@@ -122,22 +123,27 @@ class Path:
     def to_plain(self) -> Any:
         """The path as a TOML value that reads back equal: an SI float, a list of them, or text with exact numbers."""
         numbers = [float(value) for value in self.waypoints]
-        if self.mode == PathMode.CONSTANT:
-            return numbers[0]
-        if self.mode == PathMode.LIST:
-            return numbers
+        if self.mode in (PathMode.CONSTANT, PathMode.LIST):
+            written = [as_text(number, self.unit, CONTROLLED.get(self.unit)) for number in numbers]
+            return written if self.mode == PathMode.LIST else written[0]
         if self.mode == PathMode.HOLD:
             return "hold"
         lead = "to " if self.mode == PathMode.RAMP_FROM_PRESENT else ""
-        return lead + " to ".join(f"{number!r} {self.unit}" for number in numbers)
+        unit = "" if self.unit == "1" else f" {self.unit}"
+        return lead + " to ".join(f"{number!r}{unit}" for number in numbers)
 
     def __str__(self) -> str:
         if self.mode == PathMode.HOLD:
             return "hold"
-        texts = [show(value, self.unit, digits=12) for value in self.waypoints]
+        percent = self.unit == "1" and not any(is_traced(value) for value in self.waypoints)
+        texts = [f"{100.0 * x:.12g} %" if percent else show(x, self.unit, digits=12) for x in self.waypoints]
         if self.mode == PathMode.LIST:
             return ", ".join(texts)
         return ("to " if self.mode == PathMode.RAMP_FROM_PRESENT else "") + " to ".join(texts)
+
+    def called(self, field: str) -> str:
+        """What the field of this path is called by who gave it: a length without a unit is a contraction."""
+        return "contraction" if field == "length" and self.unit == "1" else field
 
     def __repr__(self) -> str:
         return f"Path({str(self)!r})"

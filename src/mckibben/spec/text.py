@@ -14,13 +14,16 @@ import attrs
 import tomli_w
 
 from mckibben.spec import presets
-from mckibben.spec.declared import Declared, describe
+from mckibben.spec.contraction import DECLARED as CONTRACTION
+from mckibben.spec.contraction import takes_it
+from mckibben.spec.declared import Declared, describe, in_own_words
 from mckibben.spec.errors import MISSING, SpecError, nearest
 from mckibben.spec.laws import LAWS, CustomLaw
 from mckibben.spec.loading import TESTS, Step, Test
 from mckibben.spec.merge import apply_overrides, merged
 from mckibben.spec.muscle import Muscle
 from mckibben.spec.path import Path
+from mckibben.spec.plausible import as_text
 
 __all__ = [
     "Case",
@@ -121,8 +124,11 @@ def _build(cls: type, mapping: Any, field: str, file_path: str) -> Any:
     """An object of a spec class from its table. `field` is its name in errors, as `Muscle.replace` takes it."""
     table = _table(mapping, field, file_path)
     declared = {item.name: item for item in describe(cls)}
+    if takes_it(cls):
+        declared["contraction"] = CONTRACTION
     _known(table, tuple(declared), file_path)
-    missing = [name for name, item in declared.items() if item.required and name not in table]
+    instead = {"length"} if "contraction" in table else {"contraction"}
+    missing = [name for name, item in declared.items() if item.required and name not in {*table, *instead}]
     if missing:
         said = f"is missing: {declared[missing[0]].meaning}"
         raise SpecError(f"{field}.{missing[0]}", allowed=said, advice=f"add it to [{file_path}]")
@@ -192,11 +198,13 @@ def plain(value: Any) -> Any:
 
 def _written(value: Any, allow_custom: bool) -> dict[str, Any]:
     table = {}
+    own = in_own_words(value)
     for item in describe(type(value)):
-        held = getattr(value, item.name)
-        if not item.stored or held is None or (item.kind == "names" and not held):
+        held = own.get(item.name)
+        if held is None or (item.kind == "names" and not held):
             continue
-        table[item.name] = _plain(item, held, allow_custom)
+        name = held.called(item.name) if isinstance(held, Path) else item.name
+        table[name] = _plain(item, held, allow_custom)
     return table
 
 
@@ -214,7 +222,7 @@ def _plain(item: Declared, held: Any, allow_custom: bool) -> Any:
         return str(held)
     if isinstance(held, tuple):
         return [entry if isinstance(entry, str) else float(entry) for entry in held]
-    return float(held) if item.kind == "quantity" else held
+    return as_text(float(held), item.unit, item.doubt) if item.kind == "quantity" else held
 
 
 def _custom(law: CustomLaw, allowed: bool) -> dict[str, Any]:

@@ -12,6 +12,8 @@ from typing import Any
 
 from mckibben.spec.change import changed as put_in
 from mckibben.spec.change import changed_muscle
+from mckibben.spec.contraction import DECLARED as CONTRACTION
+from mckibben.spec.contraction import takes_it
 from mckibben.spec.declared import Declared, describe, walk
 from mckibben.spec.errors import SpecError, nearest
 from mckibben.spec.loading import Test
@@ -48,7 +50,7 @@ def declared_at(muscle: Muscle, test: Test, name: str) -> Declared:
         found = known.get(names[0])
         if found is None or (len(names) > 1 and found.kind not in ("part", "steps")):
             raise SpecError(name, allowed="is no field that can be varied", advice=nearest(name, _names(muscle, test)))
-        owner, names = getattr(owner, found.name), names[1:]
+        owner, names = getattr(owner, found.name, None), names[1:]
     if found is None:
         raise SpecError(name, allowed="is no field that can be varied", advice=nearest(name, _names(muscle, test)))
     if found.name in _FIXED:
@@ -57,7 +59,8 @@ def declared_at(muscle: Muscle, test: Test, name: str) -> Declared:
 
 
 def _fields(owner: Any) -> dict[str, Declared]:
-    return {item.name: item for item in describe(type(owner)) if item.stored}
+    fields = {item.name: item for item in describe(type(owner))}
+    return fields | {"contraction": CONTRACTION} if takes_it(owner) else fields
 
 
 def _names(muscle: Muscle, test: Test) -> list[str]:

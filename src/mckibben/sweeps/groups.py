@@ -14,8 +14,9 @@ import jax
 import numpy as np
 
 from mckibben.model.parameters import Parameters, numbers
-from mckibben.spec import Along, BlockedForce, CustomLaw, Ends, Muscle, Path, SpecError, Step, Test
+from mckibben.spec import Along, BlockedForce, Braid, CustomLaw, Ends, Muscle, Path, SpecError, Step, Test
 from mckibben.spec import numbers as leaves_of
+from mckibben.spec.angle import from_parallels
 from mckibben.spec.vary import changed
 from mckibben.sweeps.plan import Piece
 
@@ -84,6 +85,8 @@ def _parts(value: Any) -> tuple[Any, tuple[float, ...]]:
         return (Path, value.mode, value.unit, len(value.waypoints)), tuple(value.waypoints)
     if type(value) in (int, float):
         return float, (value,)
+    if isinstance(value, Braid):  # equal braids may mean another angle by the same number
+        return (value, value.measured_from), ()
     try:
         hash(value)
     except TypeError:
@@ -95,6 +98,13 @@ def _group(muscle: Muscle, test: Test, values: dict[str, np.ndarray], index: np.
     """Designs like one, with some numbers (designs, how many) anew; those that are not certainly valid are left out."""
     if isinstance(test, BlockedForce) and test.length is None and "braid.length" in values:
         return None  # the length held is the braid's own
+    relative = any(
+        step.length is not None and step.length.unit != "m"
+        for step in getattr(test, "steps", (test,))
+        if hasattr(step, "length")
+    )
+    if "test.contraction" in values or (relative and "braid.length" in values):
+        return None  # so it is here
     steps = test.as_steps(muscle)
     step, held = steps[0], tuple(str(name) for name in steps[0].controls)
     if len(steps) > 1 or step.gas is not None or step.along != Along.VALUES or held[1:] != ("pressure",):
@@ -125,7 +135,10 @@ def _with(muscle: Muscle, values: dict[str, np.ndarray]) -> Muscle | None:
             continue
         if name not in names:
             return None
-        leaves[names.index(name)] = numbers_of[:, 0]
+        given = numbers_of[:, 0]
+        if name == "braid.angle":  # the leaf is from the parallels, what is given from what the muscle's own was
+            given = from_parallels(given, muscle.braid.measured_from)
+        leaves[names.index(name)] = given
     made: Muscle = jax.tree.unflatten(tree, leaves)
     return made
 

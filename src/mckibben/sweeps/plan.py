@@ -10,14 +10,22 @@ from importlib.metadata import version
 from typing import Any
 
 import attrs
+import numpy as np
 
 from mckibben.spec import Muscle, SpecError, Test
 from mckibben.spec.text import to_mapping
 from mckibben.spec.vary import changed
+from mckibben.sweeps.outcome import STATES
 from mckibben.sweeps.varied import Varied, from_lists, from_table
 
 __all__ = ["CHUNK", "Design", "Piece", "Plan", "plan", "versions"]
 
+MOST = 100_000_000
+"""Most designs of a sweep."""
+RATE = 1_000
+"""Designs a second and core, about, where all goes well: for a guess of the time."""
+DESIGN_BYTES = 100
+"""Bytes of a design beside its states, about."""
 CHUNK = 512
 """Designs in a chunk by default."""
 MADE_BY = ("mckibben", "jax", "jaxlib", "numpy")
@@ -79,6 +87,22 @@ class Plan:
     def steps(self) -> int:
         """States of every design."""
         return sum(step.points for step in self.test.as_steps(self.muscle))
+
+    @property
+    def bytes(self) -> int:
+        """Size of the results, in memory or on the disk."""
+        each = sum(np.dtype(kept.dtype).itemsize for kept in STATES.values())
+        return len(self) * (each * self.steps + DESIGN_BYTES)
+
+    @property
+    def said(self) -> str:
+        """How many designs these are, and a rough guess of the time and the space they take."""
+        days = len(self) / RATE / 86400.0
+        time = (
+            f"{days / 365.25:,.0f} years" if days > 730 else f"{days:,.0f} days" if days > 3 else f"{24 * days:.2g} h"
+        )
+        count = f"{len(self):,} designs of {self.steps} states"
+        return f"{count}, some {time} at {RATE:,} designs a second and {self.bytes / 1e9:,.3g} GB"
 
     def within(self, index: int) -> slice:
         """The designs of a chunk."""
@@ -148,4 +172,7 @@ def plan(
     if isinstance(size, bool) or not isinstance(size, int) or size < 1:
         raise SpecError("chunk", chunk, "must be a whole number of designs, at least 1")
     varied = from_table(muscle, test, designs) if over is None else from_lists(muscle, test, over)
-    return Plan(muscle, test, varied, over is None, float(tolerance), size)
+    made = Plan(muscle, test, varied, over is None, float(tolerance), size)
+    if len(made) > MOST:
+        raise SpecError("sweep", allowed=f"{made.said}: at most {MOST:,} are taken", advice="vary fewer values")
+    return made

@@ -21,6 +21,9 @@ from mckibben.sweeps.workers import spread
 
 __all__ = ["sweep"]
 
+IN_MEMORY = 8_000_000_000
+"""Most bytes of results that are kept without a store."""
+
 
 def sweep(
     muscle: Muscle,
@@ -61,8 +64,9 @@ def sweep(
         is one, when used.
 
     Raises:
-        SpecError: for an unknown field or a value out of range, before anything is solved. Values that are wrong only
-            together do not end the sweep: the `status` of that design is "wrong input".
+        SpecError: for an unknown field, a value out of range or too many designs (more than 10^8, or without a store
+            more than 8 GB of results), before anything is solved. Values that are wrong only together do not end the
+            sweep: the `status` of that design is "wrong input".
         SweepError: where a full disk or a lost scheduler ends the sweep. What is finished is in the store, and the same
             call goes on from there; so it does after Ctrl-C or a crash.
 
@@ -77,6 +81,9 @@ def sweep(
     if workers is not None and scheduler is not None:
         raise SpecError("workers", workers, "is for this machine only", "give either workers or scheduler")
     wanted = plan(muscle, test, over, designs, tolerance=tolerance, chunk=chunk)
+    if to is None and wanted.bytes > IN_MEMORY:
+        said = f"{wanted.said}: too much to keep in memory"
+        raise SpecError("sweep", allowed=said, advice='give a store, to="out.zarr"')
     keeper = Memory(wanted) if to is None else Store.of(to, wanted, force)
     _finish(wanted, keeper, workers, scheduler, watch or (lambda done, total: None))
     return keeper.dataset()

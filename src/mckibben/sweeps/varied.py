@@ -13,6 +13,7 @@ import numpy as np
 
 from mckibben.spec import Muscle, Path, PathMode, SpecError, Test
 from mckibben.spec.declared import Declared
+from mckibben.spec.plausible import trusted
 from mckibben.spec.text import plain
 from mckibben.spec.vary import declared_at, full_name, read
 from mckibben.units import is_traced
@@ -21,6 +22,8 @@ __all__ = ["Varied", "from_lists", "from_table"]
 
 _HEAD = re.compile(r"\s*([^\[\]]+?)\s*(?:\[([^\[\]]*)\])?\s*")
 _RANGE = {"from", "to", "points"}
+MOST = 10_000_000
+"""Most values of one field."""
 
 
 @attrs.frozen
@@ -31,6 +34,7 @@ class Varied:
     values: tuple[Any, ...]
     unit: str  #: SI unit, "" where the values are no numbers
     meaning: str
+    measured_from: str = ""  #: of an angle: "parallels", "axis", or the field that says which
 
     @property
     def plain(self) -> list[Any]:
@@ -51,7 +55,8 @@ class Varied:
     def about(self) -> dict[str, str]:
         """Attributes of the coordinate."""
         number = self.coordinate.dtype.kind in "if"
-        return {"long_name": self.meaning} | ({"units": self.unit or "1"} if number else {})
+        measured = {"measured_from": self.measured_from} if self.measured_from else {}
+        return {"long_name": self.meaning} | ({"units": self.unit or "1"} if number else {}) | measured
 
 
 def _shown(value: Any) -> Any:
@@ -70,13 +75,15 @@ def from_lists(muscle: Muscle, test: Test, over: Mapping[str, Any]) -> tuple[Var
     """
     if not isinstance(over, Mapping) or not over:
         raise SpecError("over", over, "must name at least one field", 'such as {"braid.angle": ["30 deg", "36 deg"]}')
-    return _distinct([_varied(muscle, test, str(name), values) for name, values in over.items()])
+    return _checked(muscle, [_varied(muscle, test, str(name), values) for name, values in over.items()])
 
 
 def _varied(muscle: Muscle, test: Test, name: str, given: Any) -> Varied:
     declared = declared_at(muscle, test, name)
     if isinstance(given, Mapping) and set(given) & _RANGE and declared.kind != "part":
-        given = _range(name, declared, given)
+        between = _range(name, declared, given)
+        with trusted():  # its ends were read
+            return _of(name, declared, between, f"over.{name}")
     if hasattr(given, "magnitude") and np.ndim(given.magnitude) == 1:
         given = [item * given.units for item in given.magnitude]
     if isinstance(given, (str, bytes, Mapping)) or not hasattr(given, "__iter__"):
@@ -105,6 +112,8 @@ def _read(name: str, declared: Declared, item: Any, where: str) -> Any:
 
 def _range(name: str, declared: Declared, given: Mapping[str, Any]) -> list[Any]:
     points = given.get("points")
+    if isinstance(points, int) and points > MOST:
+        raise SpecError(f"over.{name}.points", points, f"must be at most {MOST:,}")
     if set(given) != _RANGE or not isinstance(points, int) or isinstance(points, bool) or points < 2:
         said = "must give from, to and points (a whole number, at least 2)"
         raise SpecError(f"over.{name}", dict(given), said, 'such as { from = "30 deg", to = "50 deg", points = 21 }')
@@ -118,11 +127,19 @@ def _range(name: str, declared: Declared, given: Mapping[str, Any]) -> list[Any]
     return values
 
 
-def _distinct(found: list[Varied]) -> tuple[Varied, ...]:
+def _checked(muscle: Muscle, found: list[Varied]) -> tuple[Varied, ...]:
+    """The fields, none of them twice, and an angle with what it is measured from."""
     names = [varied.field for varied in found]
     for name in names:
         if names.count(name) > 1:
             raise SpecError(name, allowed="is given twice")
+    if "braid.angle" not in names:
+        return tuple(found)
+    says = [name for name in ("braid.angle_from", "braid") if name in names]
+    measured = says[0] if says else str(muscle.braid.measured_from)
+    meaning = "braid angle theta0, measured from the " + (f"one that {measured} says" if says else measured)
+    angle = found[names.index("braid.angle")]
+    found[names.index("braid.angle")] = attrs.evolve(angle, meaning=meaning, measured_from=measured)
     return tuple(found)
 
 
@@ -146,7 +163,7 @@ def from_table(muscle: Muscle, test: Test, designs: Any) -> tuple[Varied, ...]:
         found.append(Varied(full_name(name), values, kind, declared.meaning))
     if not found or not found[0].values:
         raise SpecError("designs", allowed="holds no designs", advice="give one row for each, below the heads")
-    return _distinct(found)
+    return _checked(muscle, found)
 
 
 def _with_unit(item: Any, unit: str | None) -> Any:
@@ -176,14 +193,15 @@ def _csv(path: str | PathLike[str]) -> list[tuple[str, list[Any]]]:
     name = fspath(path)
     try:
         with open(path, encoding="utf-8-sig", newline="") as stream:
-            rows = [row for row in csv.reader(stream) if any(cell.strip() for cell in row)]
+            lines = [line for line in stream if not line.lstrip().startswith("#")]
+        separator = ";" if ";" in next(filter(str.strip, lines), "") else ","  # spreadsheets where "," is decimal
+        rows = [row for row in csv.reader(lines, delimiter=separator) if any(cell.strip() for cell in row)]
     except FileNotFoundError as error:
         raise SpecError(name, allowed="there is no such file") from error
     except OSError as error:
         raise SpecError(name, allowed=f"cannot be read: {error.strerror or error}") from error
     except (UnicodeDecodeError, csv.Error, ValueError) as error:
         raise SpecError(name, allowed="is no CSV table", advice="save it as CSV in UTF-8, with commas") from error
-    rows = [row for row in rows if not row[0].lstrip().startswith("#")]
     if not rows:
         raise SpecError(name, allowed="is empty", advice='the first line names the fields: "braid.angle [deg],ends"')
     for k, row in enumerate(rows[1:]):

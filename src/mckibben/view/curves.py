@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from typing import Any
 
 import numpy as np
@@ -11,10 +11,8 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from mckibben.results.result import Result
-from mckibben.results.sensitivity import Sensitivity
 from mckibben.results.variables import FIELDS, STEP
 from mckibben.view import style
-from mckibben.view.tornado import tornado
 
 MARKS = {"unstable": ("x", style.VERMILLION), "inadmissible": ("s", style.ORANGE)}
 """Marker and colour of states that exist and are not stable."""
@@ -57,29 +55,8 @@ def against(result: Result) -> tuple[np.ndarray, str]:
     return (np.arange(len(result), dtype=float), "State") if name == "state" else (column(result, name), label(name))
 
 
-def plot(result: Result | Sensitivity) -> Figure:
-    """Draw a result, as the kind of its test asks for, or the tornado chart of a sensitivity.
-
-    Isometric and blocked: force against pressure. Isobaric: force against contraction. Isotonic and free contraction:
-    contraction (and length) against pressure. Protocol and step: force, length and pressure state by state, and force
-    against length. States that are not stable are marked; states that were not reached are gaps, with a note.
-
-    Args:
-        result: what `run`, `load` or `sensitivity` gave. Nothing is solved.
-
-    Returns:
-        A matplotlib Figure, in mm, N, bar and per cent; `figure.savefig("curve.pdf")` writes it.
-
-    Raises:
-        Nothing: also a result without a single state gets a picture, which says why.
-
-    >>> curve = mk.run(mk.presets.paper(), mk.Isometric(length="115 mm", pressure="0 to 1 bar", points=3))
-    >>> figure = mk.plot(curve)
-    >>> figure.axes[0].get_xlabel(), figure.axes[0].get_ylabel()
-    ('Pressure (bar)', 'Force (N)')
-    """
-    if isinstance(result, Sensitivity):
-        return tornado(result)
+def plot(result: Result) -> Figure:
+    """Draw a result as the kind of its test asks for."""
     kind = result.test.kind
     if kind in ("protocol", "step"):
         figure = _plot_protocol(result)
@@ -94,6 +71,21 @@ def plot(result: Result | Sensitivity) -> Figure:
             _length_axis(axes, result)
         style.tidy(axes, "best" if axes.get_legend_handles_labels()[0] else None)
     notes(figure, result)
+    return figure
+
+
+def family(results: Mapping[str, Result]) -> Figure:
+    """Curves of several results of one kind of test in one picture, with their names in the legend."""
+    first = next(iter(results.values()))
+    figure = style.new_figure()
+    axes = figure.add_subplot()
+    y = "contraction" if first.test.kind in ("isotonic", "free-contraction") else "force"
+    x = driven(first)
+    for k, (name, result) in enumerate(results.items()):
+        line(axes, result, x, y, color=style.LINES[k % len(style.LINES)], label=name)
+    axes.set(xlabel="State" if x == "state" else label(x), ylabel=label(y))
+    style.tidy(axes, "best")
+    style.assumption_note(figure, first.muscle)
     return figure
 
 

@@ -4,9 +4,11 @@ import tomllib
 
 import numpy as np
 import xarray as xr
+from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.ticker import MaxNLocator
 
+from mckibben.spec import Muscle, SpecError
 from mckibben.spec.text import muscle_from_mapping
 from mckibben.view import style
 
@@ -20,15 +22,16 @@ def region(limits: xr.Dataset) -> Figure:
     axes.fill_betweenx(pressure, shortest, longest, color=style.SKY, alpha=0.25, lw=0, label="admissible and stable")
     axes.plot(shortest, pressure, "o-", ms=2.5, color=style.BLUE, label="shortest")
     stable = style.shown(limits["stable_down_to"].values, "m")
-    if np.nanmax(shortest - stable) > 1e-3:
+    if (shortest - stable > 1e-3).any():  # not where they are NaN
         axes.plot(stable, pressure, ":", color=style.BLUE, label="stable, but behind its fitting")
     axes.plot(longest, pressure, "--", color=style.VERMILLION, label="full extension")
-    muscle = muscle_from_mapping(tomllib.loads(limits.attrs["muscle"]))
-    axes.axvline(1e3 * muscle.braid.length, color="0.5", lw=0.8, label="initial length")
+    muscle = _muscle(limits)
+    if muscle is not None:
+        axes.axvline(1e3 * muscle.braid.length, color="0.5", lw=0.8, label="initial length")
+        style.assumption_note(figure, muscle)
     axes.set_xlabel(style.axis_label("length", "m"))
     axes.set_ylabel(style.axis_label("pressure", "Pa"))
     style.tidy(axes, "upper center", ncols=2, bbox_to_anchor=(0.5, 1.32))
-    style.assumption_note(figure, muscle)
     return figure
 
 
@@ -38,13 +41,40 @@ def force_map(forces: xr.Dataset) -> Figure:
     axes = figure.add_subplot()
     length, pressure = style.shown(forces["length"].values, "m"), style.shown(forces["pressure"].values, "Pa")
     force = forces["force"].values
+    axes.set(xlabel=style.axis_label("length", "m"), ylabel=style.axis_label("pressure", "Pa"))
+    if not np.isfinite(force).any():
+        axes.text(0.5, 0.5, "no state was reached", transform=axes.transAxes, ha="center", fontsize=style.LABEL)
+    elif min(force.shape) == 1:
+        _line(axes, length, pressure, force)
+    else:
+        _contours(figure, axes, length, pressure, force)
+    style.tidy(axes)
+    muscle = _muscle(forces)
+    if muscle is not None:
+        style.assumption_note(figure, muscle)
+    return figure
+
+
+def _contours(figure: Figure, axes: Axes, length: np.ndarray, pressure: np.ndarray, force: np.ndarray) -> None:
     size = float(np.nanmax(np.abs(force)))
     levels = MaxNLocator(20, symmetric=True).tick_values(-size, size)
     filled = axes.contourf(length, pressure, force, levels, cmap="RdBu_r")
-    lines = axes.contour(length, pressure, force, [0.0], colors="k", linewidths=1.0)
-    axes.clabel(lines, fmt="free: 0 N", fontsize=6)
-    figure.colorbar(filled, ax=axes, ticks=MaxNLocator(9, symmetric=True), label=style.axis_label("force", "N"))
-    axes.set_xlabel(style.axis_label("length", "m"))
-    axes.set_ylabel(style.axis_label("pressure", "Pa"))
-    style.assumption_note(figure, muscle_from_mapping(tomllib.loads(forces.attrs["muscle"])))
-    return figure
+    if np.nanmin(force) < 0.0 < np.nanmax(force):
+        lines = axes.contour(length, pressure, force, [0.0], colors="k", linewidths=1.0)
+        axes.clabel(lines, fmt="free: 0 N", fontsize=6)
+    style.colour_bar(figure, filled, axes, style.axis_label("force", "N"), ticks=MaxNLocator(9, symmetric=True))
+
+
+def _line(axes: Axes, length: np.ndarray, pressure: np.ndarray, force: np.ndarray) -> None:
+    """A map of one pressure, or of one length: a curve."""
+    x, name = (length, axes.get_xlabel()) if len(pressure) == 1 else (pressure, axes.get_ylabel())
+    axes.plot(x, force.ravel(), color=style.BLUE, linewidth=1.2, marker=".", markersize=3.0)
+    axes.set(xlabel=name, ylabel=style.axis_label("force", "N"))
+
+
+def _muscle(data: xr.Dataset) -> Muscle | None:
+    """The muscle of a Dataset; None where a file cannot hold it (a law of the user's own)."""
+    try:
+        return muscle_from_mapping(tomllib.loads(data.attrs["muscle"]))
+    except SpecError:
+        return None

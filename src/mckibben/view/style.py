@@ -6,6 +6,7 @@ Figures are made without pyplot, so nothing global is kept: pictures can be draw
 from __future__ import annotations
 
 import io
+import math
 import os
 import textwrap
 from collections.abc import Iterable
@@ -119,6 +120,12 @@ def note(figure: Figure, text: str) -> None:
     figure.supxlabel("\n".join(line for line in lines if line), fontsize=NOTE, color=GREY, x=0.01, ha="left")
 
 
+def heading(figure: Figure, text: str) -> None:
+    """A line above everything that says what is shown."""
+    width = int(figure.get_figwidth() * 72.0 / (0.55 * TICK))
+    figure.suptitle("\n".join(textwrap.wrap(text, width)), fontsize=TICK, color=BLACK)
+
+
 def assumption_note(figure: Figure, muscle: Muscle) -> None:
     """Add a note that names the values of the muscle that are assumed, if there are any."""
     groups = (
@@ -159,8 +166,8 @@ def save(figure: Figure, stem: str | os.PathLike[str], formats: Iterable[str] = 
     return tuple(paths)
 
 
-def picture(figure: Figure, kind: str) -> bytes:
-    """A figure as the bytes of a file, "pdf", "png" (200 dpi) or "svg".
+def picture(figure: Figure, kind: str, pixels: int = 0) -> bytes:
+    """A figure as the bytes of a file, "pdf", "png" (200 dpi, and at least `pixels` wide) or "svg".
 
     It holds no date, so that equal pictures are equal files, and fonts as journals want them (TrueType).
     """
@@ -170,7 +177,8 @@ def picture(figure: Figure, kind: str) -> bytes:
         before = matplotlib.rcParams["pdf.fonttype"]
         matplotlib.rcParams["pdf.fonttype"] = 42
         try:
-            figure.savefig(content, format=kind, dpi=200, metadata=nothing)
+            dpi = max(200, math.ceil(pixels / figure.get_figwidth()))
+            figure.savefig(content, format=kind, dpi=dpi, metadata=nothing)
         finally:
             matplotlib.rcParams["pdf.fonttype"] = before
     return content.getvalue()

@@ -1,0 +1,125 @@
+"""`plot()`: the picture of whatever the package's calls give."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from typing import Any
+
+from matplotlib.figure import Figure
+
+from mckibben.results.result import Result, State
+from mckibben.results.sensitivity import Sensitivity
+from mckibben.spec import BlockedForce, FreeContraction, Path, Protocol
+from mckibben.spec.errors import SpecError, nearest
+from mckibben.units import show
+from mckibben.view import curves, maps, style
+from mckibben.view.tornado import tornado
+
+__all__ = ["KINDS", "plot"]
+
+KINDS: dict[str, Callable[[Result], Figure]] = {
+    "auto": curves.plot,
+    "profiles": curves.profiles,
+    "tension": curves.tension,
+    "energy": curves.energy,
+    "shares": curves.shares,
+}
+"""The pictures of a result."""
+_TAKES = "a result of run, solve, sensitivity, force_map or working_range"
+
+
+def plot(result: Any, kind: str = "auto") -> Figure:
+    """Draw what `run`, `solve`, `load`, `sensitivity`, `force_map` or `working_range` gave. Nothing is solved.
+
+    A result is drawn as the kind of its test asks for. Isometric and blocked: force against pressure. Isobaric: force
+    against contraction. Isotonic and free contraction: contraction (and length) against pressure. Protocol and step:
+    force, length and pressure state by state, and force against length. States that are not stable are marked; states
+    that were not reached are gaps, with a note. A `State` is drawn as its radius and braid angle along the muscle, a
+    force map as contours over length and pressure, a working range as the region in that plane, a sensitivity as a
+    tornado chart.
+
+    Args:
+        result: what one of these calls gave, or several results of one kind of test by their names, as
+            {"1 bar": first, "2 bar": second}: a family of curves.
+        kind: of a result or a state, as on the command line: "auto" (as above), "profiles" (radius and angle along the
+            muscle), "tension" (of one fibre along it), "energy" (the stored energies) or "shares" (of the axial load
+            that mesh and chamber carry).
+
+    Returns:
+        A matplotlib Figure, in mm, N, bar and per cent; `figure.savefig("curve.pdf")` writes it.
+
+    Raises:
+        SpecError: for anything else, or an unknown kind. A result without a single state is no error: its picture says
+            why.
+
+    >>> curve = mk.run(mk.presets.paper(), mk.Isometric(length="115 mm", pressure="0 to 1 bar", points=3))
+    >>> figure = mk.plot(curve)
+    >>> figure.axes[0].get_xlabel(), figure.axes[0].get_ylabel()
+    ('Pressure (bar)', 'Force (N)')
+    >>> mk.plot(curve, kind="tension").axes[0].get_ylabel()
+    'Fibre tension T (N)'
+    """
+    if not isinstance(kind, str) or kind not in KINDS:
+        raise SpecError("plot.kind", kind, "is unknown", nearest(str(kind), KINDS))
+    if isinstance(result, Result):
+        return _headed(KINDS[kind](result), result)
+    if isinstance(result, State):
+        return _headed(KINDS["profiles" if kind == "auto" else kind](result.result), result.result)
+    if isinstance(result, Mapping) and not hasattr(result, "data_vars"):
+        return _family(result, kind)
+    draw = tornado if isinstance(result, Sensitivity) else _of_dataset(result)
+    if kind != "auto":
+        raise SpecError("plot.kind", kind, "is for a result or a state", "leave it out")
+    return draw(result)
+
+
+def _family(results: Mapping[Any, Any], kind: str) -> Figure:
+    """Several results of one kind of test in one picture."""
+    if kind != "auto":
+        raise SpecError("plot.kind", kind, "is for one result", "leave it out")
+    wrong = [name for name, result in results.items() if not isinstance(result, Result)]
+    if wrong or not results:
+        raise SpecError("plot", wrong[0] if wrong else "{}", "must hold results of run by their names")
+    kinds = list(dict.fromkeys(result.test.kind for result in results.values()))
+    if len(kinds) > 1:
+        raise SpecError("plot", ", ".join(kinds), "are tests of several kinds", "draw those of one kind together")
+    return curves.family({str(name): result for name, result in results.items()})
+
+
+def _headed(figure: Figure, result: Result) -> Figure:
+    """The figure with a line that names the muscle, the test and what is held."""
+    test = result.test
+    held = _held(test)
+    if isinstance(test, Protocol):
+        steps = (", ".join(f"{name} {path}" for name, path in _paths(step).items()) for step in test.steps)
+        held = "; ".join(f"{k} {said}" for k, said in enumerate(steps, 1))
+    if isinstance(test, BlockedForce) and test.length is None:
+        held = f"length {show(result.muscle.braid.length, 'm')}"
+    if isinstance(test, FreeContraction):
+        held = "force 0 N"
+    name = f'Muscle "{result.muscle.name}"' if result.muscle.name else "Muscle without a name"
+    style.heading(figure, f"{name}: {test.kind} test" + (f", {held}" if held else ""))
+    return figure
+
+
+def _paths(test: Any) -> dict[str, Path]:
+    """What a test controls, by name."""
+    paths = ((name, getattr(test, name, None)) for name in ("length", "force", "pressure", "volume"))
+    return {path.called(name): path for name, path in paths if path is not None}
+
+
+def _held(test: Any) -> str:
+    return ", ".join(f"{name} {path}" for name, path in _paths(test).items() if not path.varies)
+
+
+def _of_dataset(data: Any) -> Callable[[Any], Figure]:
+    """What draws a Dataset; SpecError for what is none of the package's, or a sweep."""
+    names = set(getattr(data, "data_vars", ()))
+    if {"force", "largest_fibre_tension"} <= names:
+        return maps.force_map
+    if {"shortest", "longest"} <= names:
+        return maps.region
+    if "sweep" in getattr(data, "attrs", {}):
+        advice = 'choose what to draw: data["force"].isel(step=-1).plot()'
+        raise SpecError("plot", allowed="a sweep has no picture of its own", advice=advice)
+    raise SpecError("plot", data, f"must be {_TAKES}")
