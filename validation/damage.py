@@ -126,11 +126,9 @@ def main() -> None:
     with tempfile.TemporaryDirectory() as folder:
         of_results, times = results(Path(folder), asked.copies, rng)
         of_sweeps, more = sweeps(Path(folder), asked.copies, rng)
-    said = f"Written by `python validation/damage.py --copies {asked.copies} --seed {asked.seed}`. One place of one file is "
-    said += (
-        "damaged in each copy. The same content: zeros where there were zeros, or designs that are called pending and "
-    )
-    said += f"hold nothing. To save and to load {times}; to load {more}."
+    said = f"""Written by `python validation/damage.py --copies {asked.copies} --seed {asked.seed}`. One place of one
+file is damaged in each copy. The same content: zeros where there were zeros, or designs called pending that hold
+nothing. To save and to load {times}; to load {more}."""
     put("## Damaged files", ["", fill(said, 120), *table(HEAD, [*of_results, *of_sweeps])])
     print(*("  ".join(map(str, row)) for row in (HEAD, *of_results, *of_sweeps)), said, sep="\n")
 

@@ -163,5 +163,5 @@ def _specification(name: str, about: dict[str, Any]) -> tuple[Muscle, Test]:
     except SpecError as error:
         advice = "its numbers can be read with xarray.open_dataset"
         raise SpecError(name, allowed=f"its muscle or test cannot be built again: {error}", advice=advice) from error
-    except tomllib.TOMLDecodeError as error:
+    except (ValueError, RecursionError) as error:
         raise SpecError(name, allowed="is damaged: its muscle or test is not TOML", advice="make it again") from error

@@ -13,7 +13,7 @@ import attrs
 
 from mckibben.spec.declared import Declared, Reads, declare
 from mckibben.spec.errors import SpecError
-from mckibben.spec.fields import choice, count, spec
+from mckibben.spec.fields import check_size, choice, count, spec
 from mckibben.spec.muscle import Muscle
 from mckibben.spec.path import Path, PathMode
 from mckibben.units import DISPLAY, UnitError, is_traced
@@ -42,17 +42,27 @@ def _read_path(value: Any, field: str, declared: Declared) -> Path:
     for waypoint in path.waypoints:
         if not is_traced(waypoint) and not declared.contains(waypoint):
             raise SpecError(field, value, f"must be {declared.allowed}", declared.advice)
+        check_size(waypoint, value, field, declared)
     if declared.kind == "held" and path.mode != PathMode.CONSTANT:
         raise SpecError(field, value, "must be one value", f"this test holds its {field.rpartition('.')[2]}")
     return path
 
 
 _QUANTITIES: dict[str, dict[str, Any]] = {
-    "length": {"unit": "m", "meaning": "distance between the fittings", "low": 0.0, "low_open": True},
-    "force": {"unit": "N", "meaning": "axial force, > 0 where the muscle pulls its fittings together"},
-    "pressure": {"unit": "Pa", "meaning": "gauge pressure", "low": -ATMOSPHERE, "advice": "pressure is gauge"},
-    "volume": {"unit": "m^3", "meaning": "volume inside the braid", "low": 0.0, "low_open": True},
-}
+    "length": {
+        "unit": "m", "meaning": "distance between the fittings", "low": 0.0, "low_open": True, "size": (1e-6, 1e3),
+    },
+    "force": {
+        "unit": "N", "meaning": "axial force, > 0 where the muscle pulls its fittings together", "size": (0.0, 1e9),
+    },
+    "pressure": {
+        "unit": "Pa", "meaning": "gauge pressure", "low": -ATMOSPHERE, "size": (0.0, 1e9),
+        "advice": "pressure is gauge",
+    },
+    "volume": {
+        "unit": "m^3", "meaning": "volume inside the braid", "low": 0.0, "low_open": True, "size": (1e-18, 1e6),
+    },
+}  # fmt: skip
 
 
 def controlled(name: str, *, held: bool = False, default: Any = attrs.NOTHING) -> Any:

@@ -1,8 +1,8 @@
 """The files of the chunks of a store: their names and bytes, and whether a chunk is whole.
 
 Beside the last file of a chunk, which says that the chunk is there, lies a note: the digest (SHA-256) of each of its
-files, which chunk it is, and the digest of the sweep that it belongs to. Chunks that were written before there were notes
-are known by the size of their files.
+files, which chunk it is, and the digest of its sweep. Chunks from before there were notes are known by the size of
+their files.
 """
 
 from __future__ import annotations
