@@ -355,3 +355,46 @@ def test_a_folder_comes_whole_or_not_at_all(tmp_path: Path) -> None:
         fill("never", broken=True)
     assert (path / "inside").read_text(encoding="utf-8") == "second"
     assert os.listdir(tmp_path) == ["out"]
+
+
+@pytest.mark.skipif(os.name != "posix", reason="numbers of processes")
+def test_what_dead_processes_left_is_cleared(tmp_path: Path) -> None:
+    """Folders and files, by the next write to the same name; what is of others or of living processes stays."""
+    with subprocess.Popen([sys.executable, "-c", ""]) as process:
+        process.wait()
+    dead, alive, machine = process.pid, os.getppid(), disk._here().partition(".")[0]
+    left = [f".out.{dead}.tmp", f".out.{machine}.{dead}.0123abcd.tmp", f".out.{machine}.{dead}.0123abcd.old"]
+    stays = [
+        f".out.{alive}.tmp", f".out.{machine}.{alive}.0123abcd.tmp", f".out.ffffff.{dead}.0123abcd.tmp",
+        f".other.{dead}.tmp", f"out.{dead}.tmp", f".out.{dead}.txt", f".out.nc.{dead}.tmp",
+    ]  # fmt: skip
+    for name in (*left, *stays):
+        (tmp_path / name).mkdir()
+        (tmp_path / name / "inside").write_text("half")
+    with disk.new_folder(tmp_path / "out") as made:
+        made.mkdir()
+    assert sorted(os.listdir(tmp_path)) == sorted([*stays, "out"])
+    half = tmp_path / f".out.nc.{machine}.{dead}.89abcdef.tmp"
+    half.write_bytes(b"half")
+    disk.write(tmp_path / "out.nc", b"whole")
+    assert not half.exists()
+    assert not (tmp_path / f".out.nc.{dead}.tmp").exists()
+    assert (tmp_path / f".out.{alive}.tmp").exists()
+
+
+@pytest.mark.skipif(os.name != "posix", reason="kills by signal")
+def test_a_killed_writer_leaves_nothing_for_good(tmp_path: Path) -> None:
+    script = """
+import os, signal, sys
+from pathlib import Path
+from mckibben import disk
+with disk.new_folder(Path(sys.argv[1])) as made:
+    made.mkdir()
+    os.kill(os.getpid(), signal.SIGKILL)
+"""
+    for _ in range(2):
+        assert subprocess.run([sys.executable, "-c", script, str(tmp_path / "out.zarr")]).returncode == -signal.SIGKILL
+    assert len(os.listdir(tmp_path)) == 1  # the second has cleared what the first left
+    with disk.new_folder(tmp_path / "out.zarr") as made:
+        made.mkdir()
+    assert os.listdir(tmp_path) == ["out.zarr"]
