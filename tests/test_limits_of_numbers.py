@@ -96,6 +96,8 @@ def test_fibres_along_the_axis_or_the_parallels(angle: float) -> None:
         mk.SpecError, match=r"braid.angle = .* beyond what can be computed: 0\.0057 deg to 89\.9943 deg"
     ):
         PAPER.replace("braid.fibre", mk.Fibre(B1=1e-6, B2=1e-6, B3=1e-6)).replace("braid.angle", angle)
+    with pytest.raises(mk.SpecError, match="beyond what can be computed"):
+        PAPER.replace("braid.angle", angle)
 
 
 def test_zero_is_a_choice() -> None:
@@ -154,3 +156,18 @@ def test_other_things_nested_deep(tmp_path, depth: int) -> None:
         file.write_text(f"muscle = {text}\n")
         with pytest.raises(mk.SpecError, match=r"too many tables or lists|cannot be read"):
             read_case(file)
+
+
+def test_many_spaces_take_no_time(tmp_path) -> None:
+    """In a head of a table, and in a path: nothing there takes more than a time that grows with the length."""
+    from mckibben.sweeps.plan import plan
+
+    test = mk.Isometric(length="0.1 m", pressure="0 to" + " " * 100_000 + "1 bar")
+    assert test.pressure.waypoints == (0.0, 1e5)
+    file = tmp_path / "designs.csv"
+    file.write_text("braid." + " " * 20_000 + "angle,ends\n36,clamped\n")
+    with pytest.raises(mk.SpecError) as caught:
+        plan(PAPER, test, designs=file)
+    assert len(str(caught.value)) < 1500
+    file.write_text("braid.angle" + " " * 20_000 + "[deg]\n36\n")
+    assert plan(PAPER, test, designs=file).varied[0].values == (math.radians(36.0),)

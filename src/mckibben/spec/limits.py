@@ -8,7 +8,7 @@ from typing import Any
 from mckibben.spec.errors import SpecError
 from mckibben.units import Number, is_traced, show
 
-__all__ = ["check_muscle"]
+__all__ = ["BENDING", "check_angle", "check_muscle"]
 
 SLENDERNESS = (1e-3, 1e5)
 """Length over radius of the braid."""
@@ -26,7 +26,6 @@ def check_muscle(muscle: Any) -> None:
     """SpecError that names the product and its range, unless all can be computed. Traced numbers are not judged."""
     braid, chamber = muscle.braid, muscle.chamber
     _check_ratio("braid.length", braid.length, braid.radius, "the radius", SLENDERNESS)
-    _check_angle(braid.angle)
     for name, stiffness in zip(("B1", "B2", "B3"), braid.fibre.stiffnesses, strict=True):
         if not is_traced(stiffness) and stiffness != 0.0:  # a stiffness of 0 is a choice
             _check(f"braid.fibre: the stiffness {name} of a fibre", stiffness, "N m^2", BENDING)
@@ -54,7 +53,8 @@ def _check_ratio(field: str, value: Number, other: Number, name: str, limits: tu
         raise SpecError(field, show(value, "m"), said, "check the units of both")
 
 
-def _check_angle(angle: Number) -> None:
+def check_angle(angle: Number) -> None:
+    """SpecError for fibres that lie along the parallels or the axis, but for a hair."""
     if not is_traced(angle) and min(math.sin(angle), math.cos(angle)) < FLATTEST:
         least = math.degrees(FLATTEST)
         said = f"is beyond what can be computed: {least:.4f} deg to {90.0 - least:.4f} deg"

@@ -11,7 +11,7 @@ from mckibben.spec.declared import Reads, walk
 from mckibben.spec.errors import SpecError, nearest
 from mckibben.spec.fields import choice, count, part, quantity, spec, words
 from mckibben.spec.laws import LAWS, Law
-from mckibben.spec.limits import BENDING, check_muscle
+from mckibben.spec.limits import BENDING, check_angle, check_muscle
 from mckibben.units import Number, is_traced, show
 
 __all__ = ["AngleFrom", "Braid", "Chamber", "Ends", "Fibre", "Muscle", "Natural"]
@@ -196,6 +196,7 @@ class Braid:
         if self.angle_from == AngleFrom.AXIS:
             object.__setattr__(self, "angle", math.pi / 2.0 - self.angle)
             object.__setattr__(self, "angle_from", AngleFrom.PARALLELS)
+        check_angle(self.angle)
         if not is_traced(self.fibres) and self.fibres % 2:
             raise SpecError("braid.fibres", self.fibres, "must be even", "half of the fibres wind each way")
         self._check_room()
