@@ -136,6 +136,58 @@ def test_a_cache_that_cannot_be_written_is_no_trouble(monkeypatch: pytest.Monkey
     assert kept.read(tmp_path / "file" / "name.kernel") is None
 
 
+@pytest.fixture
+def two(tmp_path: Path) -> tuple[Path, Path]:
+    tmp_path.chmod(0o700)
+    files = tmp_path / "one-00.kernel", tmp_path / "two-11.kernel"
+    for turn, file in enumerate(files):
+        kept.write(file, (b"code", turn))
+        assert kept.read(file) == (b"code", turn)
+    return files
+
+
+def test_exchanged_files_are_not_read(two: tuple[Path, Path], tmp_path: Path) -> None:
+    """Each says which kernel it holds."""
+    one, other = two
+    assert one.read_bytes().startswith(b"mckibben kernel 4\none-00.kernel\n")
+    one.rename(tmp_path / "spare")
+    other.rename(one)
+    (tmp_path / "spare").rename(other)
+    assert (kept.read(one), kept.read(other)) == (None, None)
+    first, rest = one.read_bytes(), other.read_bytes()
+    one.write_bytes(rest.splitlines(keepends=True)[0] + b"one-00.kernel\n" + first.partition(b".kernel\n")[2])
+    assert kept.read(one) is None
+    kept.write(one, (b"code", 0))
+    assert kept.read(one) == (b"code", 0)
+
+
+@pytest.mark.skipif(os.name != "posix", reason="owners and permissions")
+def test_only_the_users_own_files_are_read(
+    two: tuple[Path, Path], tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Asked on every reading, of the file and of its folder."""
+    one, other = two
+    for where, wrong, right in ((one, 0o620, 0o600), (one, 0o602, 0o600), (tmp_path, 0o770, 0o700)):
+        where.chmod(wrong)
+        assert kept.read(one) is None
+        where.chmod(right)
+        assert kept.read(one) == (b"code", 0)
+    with monkeypatch.context() as patch:
+        patch.setattr(folder.os, "getuid", lambda: one.stat().st_uid + 1)
+        assert kept.read(one) is None
+        assert not folder.private(tmp_path)
+    os.link(one, tmp_path / "elsewhere")
+    assert kept.read(one) is None
+    (tmp_path / "elsewhere").rename(other)
+    one.unlink()
+    one.symlink_to(other)
+    assert kept.read(one) is None
+    one.unlink()
+    os.mkfifo(one)
+    assert kept.read(one) is None
+    assert kept.read(other) is None  # under another name
+
+
 def test_cache_place(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
     monkeypatch.setenv("MCKIBBEN_CACHE", str(tmp_path / "mine"))
     monkeypatch.setenv("JAX_COMPILATION_CACHE_DIR", str(tmp_path / "jax"))

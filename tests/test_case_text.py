@@ -42,24 +42,28 @@ def made(recipe):
 
 
 positive = st.floats(min_value=1e-6, max_value=1e6)
+lengths = st.floats(min_value=1e-3, max_value=1.0)
+moduli = st.floats(min_value=1.0, max_value=1e6)
 numbers = st.floats(min_value=-1e5, max_value=1e5)
 laws = st.one_of(
-    call(spec.MooneyRivlin, c1=positive, c2=st.floats(0.0, 1e6)),
-    call(spec.NeoHookean, c1=positive),
-    call(spec.Yeoh, c1=positive, c2=numbers, c3=numbers),
-    call(spec.Ogden, mu=st.tuples(positive, positive), alpha=st.tuples(positive, positive)),
-    call(spec.Gent, mu=positive, Jm=positive),
+    call(spec.MooneyRivlin, c1=moduli, c2=st.floats(0.0, 1e6)),
+    call(spec.NeoHookean, c1=moduli),
+    call(spec.Yeoh, c1=moduli, c2=numbers, c3=numbers),
+    call(spec.Ogden, mu=st.tuples(moduli, moduli), alpha=st.tuples(st.floats(0.01, 100.0), st.floats(0.01, 100.0))),
+    call(spec.Gent, mu=moduli, Jm=st.floats(1e-3, 1e6)),
 )
+stiffnesses = st.floats(1e-12, 1e3)
 fibres = st.one_of(
-    call(spec.Fibre, B1=positive, B2=positive, B3=positive, natural=st.sampled_from(["helical", "straight"])),
-    call(spec.Fibre, diameter=st.floats(1e-9, 1e-8), E=positive, nu=st.floats(-0.9, 0.5), breaking_force=positive),
-)
+    call(spec.Fibre, B1=stiffnesses, B2=stiffnesses, B3=stiffnesses, natural=st.sampled_from(["helical", "straight"])),
+    call(spec.Fibre, diameter=st.floats(1e-7, 1e-6), E=st.floats(1e6, 1e12), nu=st.floats(-0.9, 0.5),
+         breaking_force=positive),
+)  # fmt: skip
 even = st.integers(1, 40).map(lambda half: 2 * half)
-braids = call(spec.Braid, radius=positive, length=positive, angle=st.floats(0.1, 1.5), fibre=fibres, fibres=even)
+braids = call(spec.Braid, radius=lengths, length=lengths, angle=st.floats(0.1, 1.5), fibre=fibres, fibres=even)
 muscles = call(
     spec.Muscle,
     braid=braids,
-    chamber=st.none() | call(spec.Chamber, thickness=positive, law=laws),
+    chamber=st.none() | call(spec.Chamber, thickness=lengths, law=laws),
     ends=st.sampled_from(["clamped", "pinned", "free"]),
     name=st.none() | st.text(st.characters(codec="utf-8"), max_size=10),
     assumed=st.sampled_from([(), ("braid.fibres",), ("braid.angle", "ends")]),
@@ -67,15 +71,15 @@ muscles = call(
 ramps = st.lists(numbers, min_size=2, max_size=4).map(lambda values: " to ".join(f"{value!r} Pa" for value in values))
 pressures = st.one_of(numbers, st.lists(numbers, min_size=1, max_size=5), ramps, ramps.map("to {}".format))
 steps = st.one_of(
-    call(spec.Step, length=positive, pressure=pressures | st.just("hold")),
+    call(spec.Step, length=lengths, pressure=pressures | st.just("hold")),
     call(spec.Step, force=numbers | st.just("to 0 N"), volume=positive),
 )
 tests = st.one_of(
     st.none(),
-    call(spec.Isometric, length=positive, pressure=pressures),
-    call(spec.Isobaric, length=st.lists(positive, min_size=1, max_size=3), pressure=numbers),
+    call(spec.Isometric, length=lengths, pressure=pressures),
+    call(spec.Isobaric, length=st.lists(lengths, min_size=1, max_size=3), pressure=numbers),
     call(spec.Isotonic, force=numbers, pressure=pressures),
-    call(spec.BlockedForce, pressure=pressures, length=st.none() | positive),
+    call(spec.BlockedForce, pressure=pressures, length=st.none() | lengths),
     call(spec.FreeContraction, pressure=pressures),
     call(spec.Protocol, steps=st.lists(steps, min_size=1, max_size=3)),
     steps,

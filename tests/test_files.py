@@ -154,8 +154,54 @@ def test_damage_is_a_clear_error(tmp_path: Path, incomplete: Result, capfd: pyte
             mk.load(path)
         except mk.SpecError:
             noticed += 1
-    assert noticed > 20
+    assert noticed == 40
     assert capfd.readouterr().err == ""
+
+
+def test_no_damage_passes_for_whole(tmp_path: Path, incomplete: Result) -> None:
+    """A bit, a cut or a run of zeros anywhere: an error, without which HDF5 would give other content or never end."""
+    whole = mk.save(incomplete, tmp_path / "whole.nc").read_bytes()
+    path, rng = tmp_path / "damaged.nc", np.random.default_rng(1)
+    for turn in range(60):
+        at, damaged = int(rng.integers(len(whole))), bytearray(whole)
+        if turn % 3 == 0:
+            damaged[at] ^= 1 << int(rng.integers(8))
+        elif turn % 3 == 1:
+            del damaged[at:]
+        else:
+            damaged[at : at + 4096] = bytes(len(damaged[at : at + 4096]))
+        if damaged != whole:
+            path.write_bytes(damaged)
+            with pytest.raises(mk.SpecError, match=r"is cut short or damaged|is no NetCDF-4 file"):
+                mk.load(path)
+
+
+def test_what_is_damaged_is_said(tmp_path: Path, incomplete: Result) -> None:
+    whole, path = mk.save(incomplete, tmp_path / "whole.nc").read_bytes(), tmp_path / "damaged.nc"
+
+    def said(find: bytes) -> str:
+        at = whole.index(find)
+        path.write_bytes(whole[:at] + bytes([whole[at] ^ 1]) + whole[at + 1 :])
+        with pytest.raises(mk.SpecError) as caught:
+            mk.load(path)
+        return str(caught.value)
+
+    assert "damaged: force not as written" in said(incomplete.force[:3].tobytes())
+    assert "damaged: r not as written" in said(incomplete.data["r"].values[1].tobytes())
+    assert "damaged: its text or description not as written" in said(b"the fibres are straight")
+    assert "damaged: its seal not as written" in said(b"\nmckibben seal ")
+    path.write_bytes(whole + b"more")
+    with pytest.raises(mk.SpecError, match="is cut short or damaged: its"):
+        mk.load(path)
+
+
+def test_the_seal_is_no_trouble_to_others(tmp_path: Path, incomplete: Result) -> None:
+    path = mk.save(incomplete, tmp_path / "out.nc")
+    with xr.open_dataset(path) as data:
+        assert data["force"].identical(incomplete.data["force"])
+        rewritten = data.load().copy()
+    rewritten.to_netcdf(tmp_path / "by_xarray.nc", engine="h5netcdf")
+    assert mk.load(tmp_path / "by_xarray.nc") == incomplete
 
 
 def test_files_that_hold_no_result(tmp_path: Path, incomplete: Result) -> None:
@@ -315,3 +361,46 @@ def test_a_folder_comes_whole_or_not_at_all(tmp_path: Path) -> None:
         fill("never", broken=True)
     assert (path / "inside").read_text(encoding="utf-8") == "second"
     assert os.listdir(tmp_path) == ["out"]
+
+
+@pytest.mark.skipif(os.name != "posix", reason="numbers of processes")
+def test_what_dead_processes_left_is_cleared(tmp_path: Path) -> None:
+    """Folders and files, by the next write to the same name; what is of others or of living processes stays."""
+    with subprocess.Popen([sys.executable, "-c", ""]) as process:
+        process.wait()
+    dead, alive, machine = process.pid, os.getppid(), disk._here().partition(".")[0]
+    left = [f".out.{dead}.tmp", f".out.{machine}.{dead}.0123abcd.tmp", f".out.{machine}.{dead}.0123abcd.old"]
+    stays = [
+        f".out.{alive}.tmp", f".out.{machine}.{alive}.0123abcd.tmp", f".out.ffffff.{dead}.0123abcd.tmp",
+        f".other.{dead}.tmp", f"out.{dead}.tmp", f".out.{dead}.txt", f".out.nc.{dead}.tmp",
+    ]  # fmt: skip
+    for name in (*left, *stays):
+        (tmp_path / name).mkdir()
+        (tmp_path / name / "inside").write_text("half")
+    with disk.new_folder(tmp_path / "out") as made:
+        made.mkdir()
+    assert sorted(os.listdir(tmp_path)) == sorted([*stays, "out"])
+    half = tmp_path / f".out.nc.{machine}.{dead}.89abcdef.tmp"
+    half.write_bytes(b"half")
+    disk.write(tmp_path / "out.nc", b"whole")
+    assert not half.exists()
+    assert not (tmp_path / f".out.nc.{dead}.tmp").exists()
+    assert (tmp_path / f".out.{alive}.tmp").exists()
+
+
+@pytest.mark.skipif(os.name != "posix", reason="kills by signal")
+def test_a_killed_writer_leaves_nothing_for_good(tmp_path: Path) -> None:
+    script = """
+import os, signal, sys
+from pathlib import Path
+from mckibben import disk
+with disk.new_folder(Path(sys.argv[1])) as made:
+    made.mkdir()
+    os.kill(os.getpid(), signal.SIGKILL)
+"""
+    for _ in range(2):
+        assert subprocess.run([sys.executable, "-c", script, str(tmp_path / "out.zarr")]).returncode == -signal.SIGKILL
+    assert len(os.listdir(tmp_path)) == 1  # the second has cleared what the first left
+    with disk.new_folder(tmp_path / "out.zarr") as made:
+        made.mkdir()
+    assert os.listdir(tmp_path) == ["out.zarr"]

@@ -227,11 +227,16 @@ def test_an_executable_of_something_else_is_dropped(
         right = find(bench.problem(OWN, 2.0), held)
         file, other = next(place.glob("setting-*")), next(place.glob("evaluate-*"))
         size = file.stat().st_size
-        for wrong in ("renamed", "forged"):
+        for wrong in ("renamed", "forged", "exchanged"):
             if wrong == "renamed":
                 file.write_bytes(other.read_bytes())
-            else:
+            elif wrong == "forged":
                 kernels.kept.write(file, kernels.kept.read(other))
+            else:  # both under each other's name, and sealed as such
+                contents = kernels.kept.read(file), kernels.kept.read(other)
+                kernels.kept.write(file, contents[1])
+                kernels.kept.write(other, contents[0])
+                evaluate.clear_cache()
             setting.clear_cache()
             assert find(bench.problem(OWN, 2.0), held).force == pytest.approx(right.force, rel=1e-11)
             assert abs(file.stat().st_size - size) < 500  # made anew

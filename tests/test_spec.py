@@ -75,6 +75,12 @@ def test_the_range_error_in_full():
     )
 
 
+def test_an_error_is_short_whatever_the_name():
+    error = SpecError("muscle." + "x" * 20000, 1.0, "unknown " + "y" * 20000)
+    assert len(str(error)) < 1500
+    assert len(error.field) == 20007
+
+
 OWNERS = {
     "Braid": braid,
     "Chamber": lambda **given: Chamber(**({"thickness": 1e-3, "law": spec.NeoHookean(c1=1.0)} | given)),

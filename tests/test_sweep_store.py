@@ -1,4 +1,4 @@
-"""Sweeps in a Zarr store: what is in it, and that a sweep that was cut short goes on to the same bytes."""
+"""Sweeps in a Zarr store: what is in it, and that a sweep that was cut short goes on to the same chunk files."""
 
 import errno
 import json

@@ -8,6 +8,7 @@ from environment import OUT, ROOT
 from pictures import draw_errors, draw_map
 from random_muscles import is_reached, is_stable, is_told
 from sample import SEED, SHARES
+from sections import kept
 
 TOLERANCE = 1e-10
 """Residual below which a state counts as converged."""
@@ -29,7 +30,7 @@ def write(rows: list[Row]) -> None:
         errors = json.loads(ERRORS.read_text(encoding="utf-8"))
         draw_errors(errors, here / "error_estimate.png")
         text += [*_errors(errors), "", "![estimate against true error](error_estimate.png)"]
-    README.write_text("\n".join(text) + "\n", encoding="utf-8")
+    README.write_text("\n".join([*text, *kept()]) + "\n", encoding="utf-8")
 
 
 INTRODUCTION = """# Validation on random muscles

@@ -1,6 +1,7 @@
 """Writing a file, or a folder, whole or not at all: made beside its place, then moved into it.
 
-Whenever the process is killed, the name holds the old file or the new one, never a part of either. `write` is for what
+Whenever the process is killed, the name holds the old file or the new one, never a part of either; what it left beside
+it is deleted by the next that writes there. `write` is for what
 users name: it checks, and speaks of trouble in a SpecError. `replace` and `new_folder` are for files of the package's
 own, such as the chunks of a store: they raise OSError.
 """
@@ -8,7 +9,10 @@ own, such as the chunks of a store: they raise OSError.
 from __future__ import annotations
 
 import errno
+import hashlib
 import os
+import platform
+import re
 import secrets
 import shutil
 import stat
@@ -71,8 +75,10 @@ def replace(path: Path, data: bytes | memoryview, *, new: bool = False, sync: bo
         alone: nobody else writes there. Then the file beside it always has the same name, and one that a killed process
             left is taken by the next.
     """
-    mark = "" if alone else f".{secrets.token_hex(4)}"
+    mark = "" if alone else f".{_here()}.{secrets.token_hex(4)}"
     temporary = path.with_name(f".{path.name[:40]}{mark}.tmp")
+    if not alone:
+        _clear_left(path)
     flags = os.O_WRONLY | os.O_CREAT | getattr(os, "O_BINARY", 0) | (os.O_TRUNC if alone else os.O_EXCL)
     try:
         with os.fdopen(os.open(temporary, flags, 0o666), "wb") as stream:
@@ -99,7 +105,9 @@ def replace(path: Path, data: bytes | memoryview, *, new: bool = False, sync: bo
 @contextmanager
 def new_folder(path: Path) -> Iterator[Path]:
     """A folder to be filled inside, then moved to `path` whole; one that is there is deleted then. OSError."""
-    made, old = (path.with_name(f".{path.name}.{os.getpid()}.{ending}") for ending in ("tmp", "old"))
+    mark = f"{_here()}.{secrets.token_hex(4)}"
+    made, old = (path.with_name(f".{path.name[:40]}.{mark}.{ending}") for ending in ("tmp", "old"))
+    _clear_left(path)
     try:
         yield made
         if path.exists():
@@ -113,6 +121,43 @@ def new_folder(path: Path) -> Iterator[Path]:
         shutil.rmtree(old, ignore_errors=True)
     finally:
         shutil.rmtree(made, ignore_errors=True)
+
+
+def _here() -> str:
+    """This process, as part of a name: the machine, because folders are shared between machines, and its number."""
+    machine = hashlib.sha256(platform.node().encode()).hexdigest()[:6]
+    return f"{machine}.{os.getpid()}"
+
+
+_LEFT = re.compile(r"\.(?:([0-9a-f]{6})\.)?([0-9]+)(?:\.[0-9a-f]{8})?\.(?:tmp|old)")
+
+
+def _clear_left(path: Path) -> None:
+    """Delete what processes of this machine that are no longer there have left beside `path`."""
+    start = f".{path.name[:40]}"
+    with suppress(OSError):
+        for left in [entry for entry in os.listdir(path.parent) if entry.startswith(start)]:
+            found = _LEFT.fullmatch(left, len(start))
+            machine = _here().partition(".")[0]
+            if found and found[1] in (None, machine) and not _runs(int(found[2])):
+                beside = path.with_name(left)
+                if beside.is_dir() and not beside.is_symlink():
+                    shutil.rmtree(beside, ignore_errors=True)
+                else:
+                    beside.unlink(missing_ok=True)
+
+
+def _runs(process: int) -> bool:
+    """Whether there is a process of this number; where that cannot be told, as if there were."""
+    if os.name != "posix":
+        return True
+    try:
+        os.kill(process, 0)
+    except ProcessLookupError:
+        return False
+    except (OSError, OverflowError):  # of another user
+        return True
+    return True
 
 
 def _exists(name: str) -> SpecError:

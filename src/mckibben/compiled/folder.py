@@ -12,11 +12,14 @@ from functools import cache
 from importlib.metadata import version
 from pathlib import Path
 
-__all__ = ["LIMIT", "SUFFIX", "folder", "off", "private", "processor", "ready", "size"]
+__all__ = ["LIMIT", "SUFFIX", "content", "folder", "off", "private", "processor", "ready", "size"]
 
 SUFFIX = ".kernel"
 LIMIT = 256 * 2**20
 """Bytes above which the oldest files are deleted, until half is left."""
+_READING = os.O_RDONLY
+for _flag in ("O_NOFOLLOW", "O_NONBLOCK", "O_BINARY"):  # as far as the system has them; a pipe must not be waited for
+    _READING |= getattr(os, _flag, 0)
 
 
 def off() -> bool:
@@ -62,8 +65,27 @@ def private(place: Path) -> bool:
         about = place.stat()
     except OSError:
         return False
-    if not os.access(place, os.W_OK | os.X_OK):
-        return False
+    return os.access(place, os.W_OK | os.X_OK) and _own(about)
+
+
+def content(file: Path) -> bytes | None:
+    """What is in a file that is the user's own, in a folder that is; None for any other, or where there is none.
+
+    Asked on every reading, of the file that is open: the folder may have been changed, or a file put there, since it
+    was found private. A link is not followed, and a file that has another name elsewhere is not taken.
+    """
+    try:
+        handle = os.open(file, _READING)
+        with os.fdopen(handle, "rb") as stream:
+            about = os.fstat(handle)
+            fits = stat.S_ISREG(about.st_mode) and about.st_nlink == 1 and _own(about) and _own(file.parent.stat())
+            return stream.read() if fits else None
+    except OSError:
+        return None
+
+
+def _own(about: os.stat_result) -> bool:
+    """Whether a file or folder belongs to the user, and nobody else can write to it."""
     if os.name != "posix":
         return True
     return about.st_uid == os.getuid() and not about.st_mode & (stat.S_IWGRP | stat.S_IWOTH)

@@ -1,8 +1,9 @@
 """Executables on the disk, so that a later process neither traces nor compiles: keys, and files that cannot be wrong.
 
 A wrong hit would be worse than none. The key covers every source file of the package, the kernel with its static
-arguments, shapes and types, the versions, the processor and the settings of JAX and XLA. A file carries its key and the
-digest of its content; one that was cut short, changed or renamed is not read but made anew.
+arguments, shapes and types, the versions, the processor and the settings of JAX and XLA. A file says in its first lines
+which kernel it holds, with the key, and the digest of that and of its content. One that was cut short, changed, renamed
+or exchanged with another is not read but made anew, and so is one that is not the user's own.
 """
 
 import hashlib
@@ -20,13 +21,14 @@ from typing import Any
 
 import jax
 
+from mckibben.compiled.folder import content as content_of
 from mckibben.compiled.folder import processor
 from mckibben.compiled.options import Options
 
 __all__ = ["key", "read", "write"]
 
-_MAGIC = b"mckibben kernel 3\n"
-_HEAD = len(_MAGIC) + hashlib.sha256().digest_size
+_MAGIC = b"mckibben kernel 4\n"
+_DIGEST = hashlib.sha256().digest_size
 _PASSING = ("jax_compilation_cache", "jax_persistent_cache", "jax_enable_compilation_cache", "jax_log", "jax_dump",
             "jax_explain", "jax_pprint", "jax_traceback", "jax_compiler_detailed")  # fmt: skip
 """Settings of JAX that do not change what is compiled."""
@@ -63,12 +65,11 @@ def key(name: str, static: str, forms: Sequence[Any], options: Options) -> str:
 
 def read(file: Path) -> Any:
     """What was written to a file of this name; None if there is none, or none that is whole."""
-    try:
-        content = file.read_bytes()
-    except OSError:
+    content, said = content_of(file), _said(file)
+    if content is None or not content.startswith(said):
         return None
-    body = memoryview(content)[_HEAD:]
-    if content[:_HEAD] != _MAGIC + _digest(file, body):
+    digest, body = content[len(said) : len(said) + _DIGEST], memoryview(content)[len(said) + _DIGEST :]
+    if digest != _digest(said, body):
         return None
     try:
         return pickle.loads(body)
@@ -83,7 +84,8 @@ def write(file: Path, content: Any) -> None:
         body = pickle.dumps(content)
         handle, temporary = tempfile.mkstemp(prefix=".", suffix=".tmp", dir=file.parent)
         with os.fdopen(handle, "wb") as stream:
-            stream.write(_MAGIC + _digest(file, body) + body)
+            said = _said(file)
+            stream.write(said + _digest(said, body) + body)
         os.replace(temporary, file)
         temporary = None
     except Exception:  # a full disk, a result that cannot be pickled: the next process compiles
@@ -94,7 +96,12 @@ def write(file: Path, content: Any) -> None:
                 os.unlink(temporary)
 
 
-def _digest(file: Path, body: bytes | memoryview) -> bytes:
-    digest = hashlib.sha256(file.name.encode() + b"\0")
+def _said(file: Path) -> bytes:
+    """The first lines of a file of this name, which holds the name of a kernel and a key."""
+    return _MAGIC + file.name.encode() + b"\n"
+
+
+def _digest(said: bytes, body: bytes | memoryview) -> bytes:
+    digest = hashlib.sha256(said)
     digest.update(body)
     return digest.digest()

@@ -184,13 +184,15 @@ class Kernel:
     def _made(self, kind: _Kind) -> Executable:
         file = self._file(kind)
         content = None if file is None else kept.read(file)
-        if content is not None:
+        if file is not None and content is not None:
             with suppress(Exception):  # whatever another build of JAX does not like: it is compiled anew
-                return loaded(*content)
+                whose, *portable = content
+                if whose == file.name:
+                    return loaded(*portable)
         found = self._compile(kind)
         if file is not None:
             with suppress(Exception):  # not every device and program can be serialised
-                kept.write(file, found.portable())
+                kept.write(file, (file.name, *found.portable()))
         return found
 
     def _file(self, kind: _Kind) -> Path | None:

@@ -10,9 +10,13 @@ from pathlib import Path
 from typing import Any
 
 from mckibben.spec.errors import SpecError
+from mckibben.spec.merge import check_depth, too_deep
 from mckibben.spec.text import Case, apply_overrides, from_mapping
 
 __all__ = ["read_case", "read_mapping"]
+
+_DEEP = re.compile(r"""(?:[\w"'-]{1,40}[ \t]*\.[ \t]*){100}""")
+"""A hundred names joined by dots."""
 
 
 def read_case(path: str | PathLike[str], overrides: Iterable[str] = (), *, test_required: bool = True) -> Case:
@@ -48,7 +52,11 @@ def read_mapping(path: str | PathLike[str]) -> dict[str, Any]:
     name = str(path)
     try:
         text = Path(path).read_bytes().decode("utf-8-sig")  # some editors put a mark before the text
-        return tomllib.loads(text)
+        if _DEEP.search(text):  # whose reading takes as long as its length squared
+            raise too_deep(name)
+        mapping = tomllib.loads(text)
+    except SpecError:
+        raise
     except FileNotFoundError as error:
         raise SpecError(name, allowed="there is no such file") from error
     except OSError as error:
@@ -60,6 +68,8 @@ def read_mapping(path: str | PathLike[str]) -> dict[str, Any]:
         raise SpecError(name, allowed=f"is not valid TOML: {error}", advice=_habit(text, str(error))) from error
     except (RecursionError, ValueError) as error:  # brackets without end; a path with a null character
         raise SpecError(name, allowed="cannot be read") from error
+    check_depth(mapping, name)
+    return mapping
 
 
 def _habit(text: str, said: str) -> str:

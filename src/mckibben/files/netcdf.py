@@ -1,6 +1,7 @@
 """Results as NetCDF-4 files, through h5netcdf. What is loaded equals what was saved, number by number.
 
 The layout is that of xarray, which reads them. They are written without it, because importing it takes half a second.
+A seal at the end tells damage; files of before have none, and are read without.
 """
 
 from __future__ import annotations
@@ -16,6 +17,7 @@ import h5py
 import numpy as np
 
 from mckibben import disk
+from mckibben.files.seal import SIGNATURE, Parts, damage, sealed
 from mckibben.results.result import Result
 from mckibben.results.variables import COORDINATES, FIELDS, VARIABLES, about_variable, dimensions
 from mckibben.spec import Muscle, Test
@@ -28,7 +30,8 @@ if TYPE_CHECKING:
 
 __all__ = ["load", "save"]
 
-_BROKEN = (OSError, KeyError, ValueError, TypeError, RuntimeError, AttributeError, IndexError, OverflowError, EOFError)
+_BROKEN = (OSError, KeyError, ValueError, TypeError, RuntimeError, AttributeError, IndexError, OverflowError, EOFError,
+           MemoryError)  # fmt: skip
 """What HDF5 and the layers above it raise for files that are cut short or damaged."""
 
 
@@ -42,7 +45,14 @@ def save(result: Result, path: str | PathLike[str], force: bool = False) -> Path
         for name in ("v", *VARIABLES):
             _put(file, name, result.column(name))
         file.attrs.update(result.attributes)
-    return disk.write(path, content.getbuffer(), force)
+    return disk.write(path, sealed(content.getbuffer(), _parts(content)), force)
+
+
+def _parts(content: io.BytesIO) -> Parts:
+    """Where the numbers of each variable are in a file."""
+    with h5py.File(content, "r") as file:
+        found = {name: (item.id.get_offset(), item.id.get_storage_size()) for name, item in file.items()}
+    return {name: (at, size) for name, (at, size) in found.items() if at is not None}
 
 
 def _put(file: h5netcdf.File, name: str, array: np.ndarray) -> None:
@@ -81,7 +91,10 @@ def _content(path: str | PathLike[str]) -> bytes:
 
 
 def _opened(name: str, content: bytes) -> xr.Dataset:
-    if not content.startswith(b"\x89HDF\r\n\x1a\n"):
+    wrong = damage(content)
+    if wrong is not None:
+        raise SpecError(name, allowed=f"is cut short or damaged: {wrong} not as written", advice="make it again")
+    if not content.startswith(SIGNATURE):
         said = "is empty" if not content else "is no NetCDF-4 file"
         raise SpecError(name, allowed=said, advice="give a file that mckibben wrote as .nc")
     import xarray as xr
@@ -152,5 +165,5 @@ def _specification(name: str, about: dict[str, Any]) -> tuple[Muscle, Test]:
     except SpecError as error:
         advice = "its numbers can be read with xarray.open_dataset"
         raise SpecError(name, allowed=f"its muscle or test cannot be built again: {error}", advice=advice) from error
-    except tomllib.TOMLDecodeError as error:
+    except (ValueError, RecursionError) as error:
         raise SpecError(name, allowed="is damaged: its muscle or test is not TOML", advice="make it again") from error

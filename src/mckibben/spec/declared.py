@@ -32,7 +32,10 @@ class Reads(Generic[V]):
 
 @attrs.frozen(kw_only=True)
 class Declared:
-    """What is known about one field. `low` and `high` are SI; `low_open` and `high_open` exclude the bound itself."""
+    """What is known about one field. `low` and `high` are SI; `low_open` and `high_open` exclude the bound itself.
+
+    `size` says from which magnitude on, and up to which, the program computes: generous, but no number beyond is meant.
+    """
 
     kind: str
     meaning: str
@@ -44,6 +47,7 @@ class Declared:
     high: float = math.inf
     low_open: bool = False
     high_open: bool = False
+    size: tuple[float, float] = (0.0, math.inf)
     source: str = ""
     advice: str = ""
     optional: bool = False
@@ -75,6 +79,14 @@ class Declared:
             bounds.append(("below " if self.high_open else "at most ") + self.text(self.high))
         return " and ".join(bounds)
 
+    @property
+    def computed(self) -> str:
+        """The sizes that are computed, as a phrase: "0.001 mm to 10000 mm"; empty where there is no limit."""
+        least, most = self.size
+        if most == math.inf:
+            return ""
+        return f"{self.text(least)} to {self.text(most)}" if least else f"up to {self.text(most)}"
+
     def text(self, value: float) -> str:
         return f"{value:.0f}" if self.kind == "count" else show(value, self.display or self.unit)
 
@@ -87,6 +99,10 @@ class Declared:
         above = value > self.low if self.low_open else value >= self.low
         below = value < self.high if self.high_open else value <= self.high
         return above and below
+
+    def computable(self, value: float) -> bool:
+        """Whether an SI value is 0 or of a size that is computed."""
+        return value == 0.0 or self.size[0] <= abs(value) <= self.size[1]
 
 
 def declare(declared: Declared) -> Any:

@@ -7,6 +7,9 @@ from collections.abc import Iterable
 
 __all__ = ["MISSING", "SpecError", "near", "nearest"]
 
+LONGEST = 600
+"""Characters of a field's name, and of what is said of it."""
+
 
 class _Missing:
     """Marks that no value was given. None will not do: a user may have given it."""
@@ -45,7 +48,8 @@ class SpecError(ValueError):
         self.field, self.value, self.allowed, self.advice = field, value, allowed, advice
         given = "" if value is MISSING else f" = {_shown(value)}"
         said = "; ".join(part for part in (allowed, advice) if part)
-        super().__init__(_one_line(f"{field}{given}: {said}" if said else f"{field}{given}"))
+        name = _shortened(field)
+        super().__init__(_one_line(f"{name}{given}: {_shortened(said)}" if said else f"{name}{given}"))
 
     def renamed(self, field: str) -> SpecError:
         """The same error under another field name, as where a file calls `isometric.length` `test.length`."""
@@ -53,6 +57,11 @@ class SpecError(ValueError):
 
     def __reduce__(self) -> tuple[type[SpecError], tuple[object, ...]]:
         return SpecError, (self.field, self.value, self.allowed, self.advice)
+
+
+def _shortened(text: str) -> str:
+    """Text without its middle where it is longer than any of ours, because a user's is part of it."""
+    return text if len(text) <= LONGEST else f"{text[: LONGEST // 2]} ... {text[-LONGEST // 2 :]}"
 
 
 def _one_line(text: str) -> str:

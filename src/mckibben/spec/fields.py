@@ -19,7 +19,18 @@ from mckibben.spec.errors import SpecError, near
 from mckibben.spec.plausible import Doubt, reading
 from mckibben.units import DISPLAY, Number, UnitError, is_traced, to_si
 
-__all__ = ["choice", "count", "part", "quantities", "quantity", "read_quantity", "spec", "spec_classes", "words"]
+__all__ = [
+    "check_size",
+    "choice",
+    "count",
+    "part",
+    "quantities",
+    "quantity",
+    "read_quantity",
+    "spec",
+    "spec_classes",
+    "words",
+]
 
 T = TypeVar("T")
 _CLASSES: list[type] = []
@@ -38,7 +49,15 @@ def read_quantity(value: Any, field: str, declared: Declared) -> Number:
         raise SpecError(field, value, f"must be {declared.allowed}", meant or declared.advice)
     if meant:
         raise SpecError(field, value, "a number without a unit is in SI", meant)
+    check_size(number, value, field, declared)
     return number
+
+
+def check_size(number: Number, value: Any, field: str, declared: Declared) -> None:
+    """SpecError for a number in range that is so small or large that nobody means it, and nothing comes of it."""
+    if not is_traced(number) and not declared.computable(number):
+        said = f"is beyond what can be computed: {declared.computed}"
+        raise SpecError(field, value, said, "check its unit")
 
 
 def quantity(
@@ -49,6 +68,7 @@ def quantity(
     high: float = math.inf,
     low_open: bool = False,
     high_open: bool = False,
+    size: tuple[float, float] = (0.0, math.inf),
     display: str = "",
     source: str = "",
     advice: str = "",
@@ -56,11 +76,14 @@ def quantity(
     explain: Callable[[float], str] | None = None,
     doubt: Doubt | None = None,
 ) -> Any:
-    """A number with an SI unit ("1" for none). With `default=None` the field may be left out."""
+    """A number with an SI unit ("1" for none). With `default=None` the field may be left out.
+
+    `size`: the least and the largest magnitude that are computed, beside 0 where that is in range.
+    """
     return declare(
         Declared(
             kind="quantity", read=read_quantity, unit=unit, meaning=meaning, low=low, high=high, low_open=low_open,
-            high_open=high_open, display=display or DISPLAY.get(unit, ""), source=source, advice=advice,
+            high_open=high_open, size=size, display=display or DISPLAY.get(unit, ""), source=source, advice=advice,
             default=default, explain=explain, doubt=doubt,
         )
     )  # fmt: skip
@@ -75,11 +98,16 @@ def _read_quantities(value: Any, field: str, declared: Declared) -> tuple[Number
     return read
 
 
-def quantities(unit: str, *, meaning: str, display: str = "", source: str = "") -> Any:
+def quantities(
+    unit: str, *, meaning: str, size: tuple[float, float] = (0.0, math.inf), display: str = "", source: str = ""
+) -> Any:
     """A list of one or more numbers with the same unit, stored as a tuple."""
     return declare(
-        Declared(kind="quantities", read=_read_quantities, unit=unit, meaning=meaning, display=display, source=source)
-    )
+        Declared(
+            kind="quantities", read=_read_quantities, unit=unit, meaning=meaning, size=size, display=display,
+            source=source,
+        )
+    )  # fmt: skip
 
 
 def _read_count(value: Any, field: str, declared: Declared) -> Number:

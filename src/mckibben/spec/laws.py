@@ -16,12 +16,20 @@ from mckibben.units import Number, UnitError, is_traced, show, to_si
 
 __all__ = ["LAWS", "Constants", "CustomLaw", "Gent", "Law", "MooneyRivlin", "NeoHookean", "Ogden", "Yeoh"]
 
+MODULI = (1e-3, 1e12)
+"""Sizes of moduli that are computed [Pa]: from far below any gel to diamond."""
+LARGEST = (0.0, MODULI[1])
+
 
 def _check_modulus(field: str, modulus: Number, formula: str) -> None:
     """Raise unless the initial shear modulus is positive; traced numbers cannot be judged."""
     if not is_traced(modulus) and not modulus > 0.0:
         said = f"the initial shear modulus {formula} is {show(modulus, 'kPa')}: it must be above 0 kPa"
         raise SpecError(f"chamber.law.{field}", allowed=said)
+    if not is_traced(modulus) and not MODULI[0] <= modulus <= 1e3 * MODULI[1]:
+        low, high = (show(limit, "kPa") for limit in (MODULI[0], 1e3 * MODULI[1]))
+        said = f"the initial shear modulus {formula} is {show(modulus, 'kPa')}, beyond what can be computed"
+        raise SpecError(f"chamber.law.{field}", allowed=f"{said}: {low} to {high}", advice="check the units")
 
 
 @spec("chamber.law")
@@ -43,8 +51,10 @@ class MooneyRivlin:
     """
 
     name: ClassVar[str] = "mooney-rivlin"
-    c1: Reads[float] = quantity("Pa", display="kPa", meaning="factor of I1 - 3", source="Eqs. (20-28)")
-    c2: Reads[float] = quantity("Pa", display="kPa", meaning="factor of I2 - 3", source="Eqs. (20-28)", default=0.0)
+    c1: Reads[float] = quantity("Pa", display="kPa", meaning="factor of I1 - 3", source="Eqs. (20-28)", size=LARGEST)
+    c2: Reads[float] = quantity(
+        "Pa", display="kPa", meaning="factor of I2 - 3", source="Eqs. (20-28)", size=LARGEST, default=0.0
+    )
 
     def __attrs_post_init__(self) -> None:
         _check_modulus("c1", self.shear_modulus, "2 (c1 + c2)")
@@ -72,7 +82,7 @@ class NeoHookean:
     """
 
     name: ClassVar[str] = "neo-hookean"
-    c1: Reads[float] = quantity("Pa", display="kPa", meaning="factor of I1 - 3", low=0.0, low_open=True)
+    c1: Reads[float] = quantity("Pa", display="kPa", meaning="factor of I1 - 3", low=0.0, low_open=True, size=MODULI)
 
     @property
     def shear_modulus(self) -> Number:
@@ -100,9 +110,9 @@ class Yeoh:
     """
 
     name: ClassVar[str] = "yeoh"
-    c1: Reads[float] = quantity("Pa", display="kPa", meaning="factor of I1 - 3", low=0.0, low_open=True)
-    c2: Reads[float] = quantity("Pa", display="kPa", meaning="factor of (I1 - 3)^2", default=0.0)
-    c3: Reads[float] = quantity("Pa", display="kPa", meaning="factor of (I1 - 3)^3", default=0.0)
+    c1: Reads[float] = quantity("Pa", display="kPa", meaning="factor of I1 - 3", low=0.0, low_open=True, size=MODULI)
+    c2: Reads[float] = quantity("Pa", display="kPa", meaning="factor of (I1 - 3)^2", size=LARGEST, default=0.0)
+    c3: Reads[float] = quantity("Pa", display="kPa", meaning="factor of (I1 - 3)^3", size=LARGEST, default=0.0)
 
     @property
     def shear_modulus(self) -> Number:
@@ -129,8 +139,8 @@ class Ogden:
     """
 
     name: ClassVar[str] = "ogden"
-    mu: Reads[tuple[float, ...]] = quantities("Pa", display="kPa", meaning="moduli mu_i")
-    alpha: Reads[tuple[float, ...]] = quantities("1", meaning="exponents alpha_i, none zero")
+    mu: Reads[tuple[float, ...]] = quantities("Pa", display="kPa", meaning="moduli mu_i", size=LARGEST)
+    alpha: Reads[tuple[float, ...]] = quantities("1", meaning="exponents alpha_i, none zero", size=(1e-3, 100.0))
 
     def __attrs_post_init__(self) -> None:
         if len(self.mu) != len(self.alpha):
@@ -166,8 +176,12 @@ class Gent:
     """
 
     name: ClassVar[str] = "gent"
-    mu: Reads[float] = quantity("Pa", display="kPa", meaning="initial shear modulus", low=0.0, low_open=True)
-    Jm: Reads[float] = quantity("1", meaning="limit of I1 - 3, chains stretched out", low=0.0, low_open=True)
+    mu: Reads[float] = quantity(
+        "Pa", display="kPa", meaning="initial shear modulus", low=0.0, low_open=True, size=MODULI
+    )
+    Jm: Reads[float] = quantity(
+        "1", meaning="limit of I1 - 3, chains stretched out", low=0.0, low_open=True, size=(1e-3, 1e9)
+    )
 
     @property
     def shear_modulus(self) -> Number:

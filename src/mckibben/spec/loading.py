@@ -15,7 +15,7 @@ import numpy as np
 from mckibben.spec.contraction import lengths, takes_contraction
 from mckibben.spec.declared import Declared, Reads, declare, evolved
 from mckibben.spec.errors import SpecError
-from mckibben.spec.fields import choice, count, spec
+from mckibben.spec.fields import check_size, choice, count, spec
 from mckibben.spec.muscle import Muscle
 from mckibben.spec.path import Path, PathMode
 from mckibben.spec.plausible import CONTROLLED, reading
@@ -50,6 +50,8 @@ def _read_path(value: Any, field: str, declared: Declared) -> Path:
     for waypoint in path.waypoints:
         if not is_traced(waypoint) and not as_contraction and not declared.contains(waypoint):
             raise SpecError(field, value, f"must be {declared.allowed}", meant or declared.advice)
+        if not as_contraction and not meant:
+            check_size(waypoint, value, field, declared)
     if meant:
         raise SpecError(field, value, "a number without a unit is in SI", meant)
     if declared.kind == "held" and path.mode != PathMode.CONSTANT:
@@ -58,12 +60,18 @@ def _read_path(value: Any, field: str, declared: Declared) -> Path:
 
 
 _QUANTITIES: dict[str, dict[str, Any]] = {
-    "length": {"unit": "m", "meaning": "distance between the fittings", "low": 0.0, "low_open": True},
-    "force": {"unit": "N", "meaning": "axial force, > 0 where the muscle pulls its fittings together"},
+    "length": {
+        "unit": "m", "meaning": "distance between the fittings", "low": 0.0, "low_open": True, "size": (1e-6, 1e3),
+    },
+    "force": {
+        "unit": "N", "meaning": "axial force, > 0 where the muscle pulls its fittings together", "size": (0.0, 1e9),
+    },
     "pressure": {
         "unit": "Pa", "meaning": "gauge pressure", "low": -ATMOSPHERE, "high": HIGHEST, "advice": "pressure is gauge",
     },
-    "volume": {"unit": "m^3", "meaning": "volume inside the braid", "low": 0.0, "low_open": True},
+    "volume": {
+        "unit": "m^3", "meaning": "volume inside the braid", "low": 0.0, "low_open": True, "size": (1e-18, 1e6),
+    },
 }  # fmt: skip
 
 

@@ -13,7 +13,11 @@ from typing import Any
 from mckibben.spec.change import changed_name, left_behind, still_assumed
 from mckibben.spec.errors import SpecError
 
-__all__ = ["apply_overrides", "merged"]
+__all__ = ["apply_overrides", "check_depth", "merged", "too_deep"]
+
+DEEPEST = 12
+"""Tables and lists within each other in a case or sweep file: twice what any needs, and little enough to recurse."""
+_SHALLOWER = f"at most {DEEPEST} are read"
 
 
 def merged(base: Mapping[Any, Any], over: Mapping[Any, Any]) -> dict[Any, Any]:
@@ -51,6 +55,21 @@ def _merged(base: Mapping[Any, Any], over: Mapping[Any, Any], prefix: str, touch
     return result
 
 
+def check_depth(mapping: Any, name: str) -> None:
+    """SpecError for tables and lists that lie so deep within each other that reading them would exhaust the stack."""
+    level, depth = [mapping], 0
+    while level:
+        if depth > DEEPEST:
+            raise too_deep(name)
+        inner = [list(item.values()) if isinstance(item, Mapping) else item for item in level]
+        level = [value for items in inner for value in items if isinstance(value, (Mapping, list))]
+        depth += 1
+
+
+def too_deep(name: str) -> SpecError:
+    return SpecError(name, allowed="has too many tables or lists within each other", advice=_SHALLOWER)
+
+
 def apply_overrides(mapping: Mapping[Any, Any], overrides: Iterable[str]) -> dict[Any, Any]:
     """A case mapping with "dotted.name=value" texts put in: "braid.angle=36 deg", "test.pressure=0 to 2 bar".
 
@@ -59,12 +78,15 @@ def apply_overrides(mapping: Mapping[Any, Any], overrides: Iterable[str]) -> dic
     """
     if not isinstance(mapping, Mapping):
         raise SpecError("case file", mapping, "must be a table")
+    check_depth(mapping, "case file")
     result = copy.deepcopy(dict(mapping))
     for text in overrides:
         name, equals, value = str(text).partition("=")
         keys = [key.strip() for key in name.split(".")]
         if not equals or not all(keys):
             raise SpecError("override", text, "must be name=value", 'write it like "braid.angle=36 deg"')
+        if len(keys) > DEEPEST:
+            raise SpecError("override", text, f"names a table within {len(keys) - 1} others", _SHALLOWER)
         if keys[0] not in ("muscle", "test"):
             keys = ["muscle", *keys]
         if len(keys) == 1:

@@ -14,6 +14,7 @@ from mckibben.spec.declared import Reads, walk
 from mckibben.spec.errors import SpecError, nearest
 from mckibben.spec.fields import choice, count, part, quantity, spec, words
 from mckibben.spec.laws import LAWS, Law
+from mckibben.spec.limits import BENDING, check_angle, check_muscle
 from mckibben.units import Number, is_traced, show
 
 __all__ = ["Braid", "Chamber", "Ends", "Fibre", "Muscle", "Natural"]
@@ -82,21 +83,34 @@ class Fibre:
     """
 
     diameter: Reads[float | None] = quantity(
-        "m", meaning="diameter of the round solid fibre", low=0.0, low_open=True, default=None, doubt=(0.05, 50.0)
+        "m",
+        meaning="diameter of the round solid fibre",
+        low=0.0,
+        low_open=True,
+        size=(1e-7, 0.1),
+        default=None,
+        doubt=(0.05, 50.0),
     )
     E: Reads[float | None] = quantity(
-        "Pa", meaning="Young's modulus", low=0.0, low_open=True, display="GPa", default=None
+        "Pa", meaning="Young's modulus", low=0.0, low_open=True, size=(1e3, 1e13), display="GPa", default=None
     )
     nu: Reads[float | None] = quantity("1", meaning="Poisson's ratio", low=-1.0, low_open=True, high=0.5, default=None)
     B1: Reads[float | None] = quantity(
-        "N m^2", meaning="bending stiffness in the tangent plane of the tube", low=0.0, source=_ENERGY, default=None
+        "N m^2",
+        meaning="bending stiffness in the tangent plane of the tube",
+        low=0.0,
+        size=BENDING,
+        source=_ENERGY,
+        default=None,
     )
     B2: Reads[float | None] = quantity(
-        "N m^2", meaning="bending stiffness normal to the tube", low=0.0, source=_ENERGY, default=None
+        "N m^2", meaning="bending stiffness normal to the tube", low=0.0, size=BENDING, source=_ENERGY, default=None
     )
-    B3: Reads[float | None] = quantity("N m^2", meaning="torsional stiffness", low=0.0, source=_ENERGY, default=None)
+    B3: Reads[float | None] = quantity(
+        "N m^2", meaning="torsional stiffness", low=0.0, size=BENDING, source=_ENERGY, default=None
+    )
     breaking_force: Reads[float | None] = quantity(
-        "N", meaning="tension that breaks one fibre", low=0.0, low_open=True, default=None
+        "N", meaning="tension that breaks one fibre", low=0.0, low_open=True, size=(1e-9, 1e9), default=None
     )
     natural: Reads[Natural] = choice(Natural, meaning="shape of the fibre without stress", default=Natural.HELICAL)
 
@@ -158,11 +172,11 @@ class Braid:
     """
 
     radius: Reads[float] = quantity(
-        "m", meaning="radius R0 of the fibres' centre lines", low=0.0, low_open=True, source="Eq. (11)",
-        doubt=(1.0, 1e3),
+        "m", meaning="radius R0 of the fibres' centre lines", low=0.0, low_open=True, size=(1e-6, 100.0),
+        source="Eq. (11)", doubt=(1.0, 1e3),
     )  # fmt: skip
     length: Reads[float] = quantity(
-        "m", meaning="length H0 between the fittings", low=0.0, low_open=True, doubt=(10.0, 1e4)
+        "m", meaning="length H0 between the fittings", low=0.0, low_open=True, size=(1e-6, 1e3), doubt=(10.0, 1e4)
     )
     angle: Reads[float] = quantity(
         "rad", meaning="braid angle theta0 between fibres and parallels", low=0.0, low_open=True, high=math.pi / 2.0,
@@ -185,6 +199,7 @@ class Braid:
             object.__setattr__(self, "measured_from", self.angle_from)
         object.__setattr__(self, "angle", from_parallels(self.angle, self.angle_from))
         object.__setattr__(self, "angle_from", AngleFrom.PARALLELS)
+        check_angle(self.angle)
         if not is_traced(self.fibres) and self.fibres % 2:
             raise SpecError("braid.fibres", self.fibres, "must be even", "half of the fibres wind each way")
         self._check_room()
@@ -235,7 +250,13 @@ class Chamber:
     """
 
     thickness: Reads[float] = quantity(
-        "m", meaning="wall thickness t0 as made", low=0.0, low_open=True, source="Eq. (26)", doubt=(0.1, 100.0)
+        "m",
+        meaning="wall thickness t0 as made",
+        low=0.0,
+        low_open=True,
+        size=(1e-8, 10.0),
+        source="Eq. (26)",
+        doubt=(0.1, 100.0),
     )
     law: Law = part(*LAWS.values(), meaning="hyperelastic law of the elastomer")
 
@@ -278,6 +299,7 @@ class Muscle:
         for field in self.assumed:
             if field not in known:
                 raise SpecError("muscle.assumed", field, "is no field of this muscle", nearest(field, known))
+        check_muscle(self)
 
     def __remark__(self) -> str:
         """What the braid angle means."""

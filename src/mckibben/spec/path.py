@@ -56,7 +56,7 @@ class Path:
 
     @classmethod
     def _from_text(cls, text: str, unit: str) -> Path:
-        words = text.strip()
+        words = " ".join(text.split())  # the pattern below takes the square of the time for many spaces
         if words == "hold":
             return cls((), PathMode.HOLD, unit)
         pieces = [piece.strip() for piece in re.split(r"(?:^|\s+)to(?:\s+|$)", words)]

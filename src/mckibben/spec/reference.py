@@ -18,6 +18,7 @@ def reference_markdown() -> str:
         for field in describe(cls):
             default = "required" if field.required else "none" if field.default is None else str(field.default)
             allowed = field.allowed or " or ".join(kind.__name__ for kind in field.parts)
+            allowed = "; ".join(filter(None, (allowed, field.computed and f"computed: {field.computed}")))
             cells = (f"`{field.name}`", field.meaning, field.unit, allowed, default, field.source)
             lines.append("| " + " | ".join(cell.replace("|", "\\|") for cell in cells) + " |")
         lines.append("")

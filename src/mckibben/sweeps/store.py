@@ -1,8 +1,9 @@
-"""Sweeps as Zarr stores (format 3), written chunk by chunk.
+"""Sweeps as Zarr stores (format 3), written chunk by chunk, and damage to them found and mended.
 
 Every array lies along `design`, in the chunks of the sweep. The chunk of `status` is written last, after all others are
 on the disk, as one file moved into its place: where it is, the chunk is whole; where it is not, whatever else there is
-of the chunk counts for nothing and is written again. Only one process writes.
+of the chunk counts for nothing and is written again. Only one process writes. What was damaged since is known by
+digests: it is not loaded, and the same sweep mends it.
 """
 
 from __future__ import annotations
@@ -10,32 +11,35 @@ from __future__ import annotations
 import errno
 import json
 import os
-import warnings
 from collections.abc import Iterator
 from concurrent.futures import ThreadPoolExecutor
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
+from itertools import pairwise
 from os import PathLike
 from pathlib import Path
 from typing import Any
 
 import attrs
+import dask.array
 import numpy as np
 import xarray as xr
-import zarr
-from numcodecs import VLenUTF8
 
 from mckibben import disk
 from mckibben.spec.errors import SpecError
-from mckibben.sweeps.dataset import about, arranged, coordinates
-from mckibben.sweeps.outcome import DESIGN, STATES, STATUSES, Columns, Kept, Status
+from mckibben.sweeps.chunkfiles import MARK, ChunkFiles, identity_digest
+from mckibben.sweeps.dataset import arranged
+from mckibben.sweeps.description import DIGESTS, check_same, damage, describe, mend, sweep_in
+from mckibben.sweeps.outcome import DESIGN, STATES, Columns
 from mckibben.sweeps.plan import Plan
 from mckibben.sweeps.trouble import SweepError
 
 __all__ = ["Store", "is_store", "load"]
 
-_MARK = "status"
-_KEYS: dict[str, Any] = {"name": "default", "separator": "."}
-"""Chunk files lie side by side in the folder of their array: force/c.3.0."""
+_BROKEN = (OSError, ValueError, KeyError, TypeError, AttributeError, IndexError, OverflowError, RecursionError,
+           MemoryError, NotImplementedError)  # fmt: skip
+"""What Zarr and xarray raise for a description that was damaged; one with digests does not come so far."""
+
+MENDED = "run the same sweep again: it mends this and keeps the rest"
 
 
 def is_store(path: str | PathLike[str]) -> bool:
@@ -49,10 +53,11 @@ class Store:
 
     path: Path
     plan: Plan
+    files: ChunkFiles
 
     @classmethod
     def of(cls, path: str | PathLike[str], plan: Plan, force: bool = False) -> Store:
-        """The store for a sweep at `path`: a new one, or one that holds part of the same sweep.
+        """The store for a sweep at `path`: a new one, or one that holds part of the same sweep, mended if need be.
 
         Raises SpecError for a place that cannot be written, or that holds something else; with `force` another sweep
         there is deleted.
@@ -60,59 +65,53 @@ class Store:
         target = Path(os.path.realpath(path))
         if not target.name.endswith(".zarr"):
             raise SpecError(str(path), allowed="must end in .zarr")
-        store = cls(target, plan)
+        sweep = identity_digest(plan.identity())
+        files = ChunkFiles(target, sweep, len(plan), plan.chunk, plan.steps, noted=True)
+        store = cls(target, plan, files)
         if target.exists():
-            there = _sweep_in(path)
+            notes = _notes(target)
+            if notes != {sweep} and not (force and notes):  # else a store of ours, whatever became of its description
+                there = _sweep_in(path)
+                if not force:
+                    check_same(str(path), there, plan.identity())
             if not force:
-                _check_same(str(path), there, plan.identity())
-                return store
+                return store._gone_on_with()
         elif not target.parent.is_dir():
             raise SpecError(str(path), allowed=f"there is no folder {target.parent}", advice="make it first")
-        store._create()
+        with _writing(target), disk.new_folder(target) as made:  # made beside the place and moved into it whole
+            describe(made, plan)
         return store
 
-    def _create(self) -> None:
-        """Everything but the results, made beside the place and moved into it whole."""
-        with _writing(self.path), disk.new_folder(self.path) as made:
-            _describe(made, self.plan)
+    def _gone_on_with(self) -> Store:
+        """This store as it is on the disk, with digests of everything and a description as it was written."""
+        attributes: dict[str, Any] = {}
+        with _writing(self.path):
+            with suppress(SpecError):
+                _, document = sweep_in(self.path, str(self.path))
+                attributes = document["attributes"]
+            if attributes and DIGESTS not in attributes:  # from before there were digests
+                attrs.evolve(self.files, noted=False).note_all()
+            if DIGESTS not in attributes or damage(self.path, document):
+                date = attributes.get("date", "")
+                mend(self.path, self.plan, date if isinstance(date, str) else "")
+        return self
 
     @property
     def missing(self) -> list[int]:
-        """The chunks that are yet to be solved: those not written whole, and those on which the program failed."""
-        return [index for index in range(self.plan.chunks) if self._failed(index) is not False]
-
-    def _failed(self, index: int) -> bool | None:
-        """Whether the program failed on a design of a chunk; None for a chunk that is not there."""
-        try:
-            marks = np.frombuffer(self._mark(index).read_bytes(), np.int8)
-        except FileNotFoundError:
-            return None
-        whole = len(marks) == self.plan.chunk
-        return bool((marks == STATUSES.index(Status.FAILED)).any()) if whole else None
-
-    def _mark(self, index: int) -> Path:
-        return self.path / _MARK / f"c.{index}"
+        """The chunks that are yet to be solved: not written, damaged, or with designs on which the program failed."""
+        with _writing(self.path):
+            return self.files.missing()
 
     def put(self, index: int, columns: Columns) -> None:
         """Keep the designs of a chunk: all of them once this returns, or none. SweepError where it cannot be."""
         with _writing(self.path):
-            self._mark(index).unlink(missing_ok=True)
-            parts = [
-                (self.path / name / _file(name, index), self._encoded(name, columns)) for name in (*STATES, *DESIGN)
-            ]
+            self.files.mark(index).unlink(missing_ok=True)
+            contents = self.files.contents(columns)
+            parts = [(self.files.file(name, index), data) for name, data in contents.items() if name != MARK]
+            parts.append((self.files.note(index), self.files.noting(index, contents)))
             with ThreadPoolExecutor(len(parts)) as together:  # the disk settles many files in the time of one
-                list(together.map(_write, *zip(*parts[:-1], strict=True)))
-            _write(*parts[-1])
-
-    def _encoded(self, name: str, columns: Columns) -> bytes:
-        """The designs of a chunk as the bytes of a chunk file, the last one filled up."""
-        kept = (STATES | DESIGN)[name]
-        values = columns[name]
-        whole = np.full((self.plan.chunk, *values.shape[1:]), kept.fill, object if kept.dtype == "str" else kept.dtype)
-        whole[: len(values)] = values
-        if kept.dtype == "str":
-            return bytes(VLenUTF8().encode(whole))
-        return whole.astype(whole.dtype.newbyteorder("<")).tobytes()
+                list(together.map(_write, *zip(*parts, strict=True)))
+            _write(self.files.mark(index), contents[MARK])
 
     def dataset(self) -> xr.Dataset:
         """What the store holds, arranged by its fields and read from the disk when used."""
@@ -129,42 +128,19 @@ def _writing(path: Path) -> Iterator[None]:
         raise SweepError(f"{path}: {said}; what is finished is kept, and the same sweep goes on from there") from error
 
 
-def _file(name: str, index: int) -> str:
-    return f"c.{index}.0" if name in STATES else f"c.{index}"
-
-
 def _write(path: Path, data: bytes) -> None:
     """A chunk file; only this process writes."""
+    path.parent.mkdir(exist_ok=True)
     disk.replace(path, data, alone=True)
 
 
-def _describe(path: Path, plan: Plan) -> None:
-    """A store without results: the arrays, what each field is in each design, and the attributes."""
-    count, steps = len(plan), plan.steps
-    fields = " ".join(varied.field for varied in plan.varied)  # this is how xarray knows them for coordinates
-    group = zarr.create_group(path, zarr_format=3, attributes=about(plan) | {"coordinates": fields})
-    for name, (dim, values, attributes) in coordinates(plan).items():
-        kind = "str" if values.dtype.kind in "UO" else str(values.dtype)
-        chunks = (min(max(plan.chunk, 2**14), max(len(values), 1)),)
-        made = _made(group, name, Kept(kind, attributes), values.shape, chunks, (dim,))
-        made[:] = values.astype(object) if kind == "str" else values
-    for name, kept in STATES.items():
-        _made(group, name, kept, (count, steps), (plan.chunk, steps), ("design", "step"))
-    for name, kept in DESIGN.items():
-        _made(group, name, kept, (count,), (plan.chunk,), ("design",))
-    with warnings.catch_warnings():
-        warnings.filterwarnings("ignore", message="Consolidated metadata is currently not part")
-        zarr.consolidate_metadata(path, zarr_format=3)
-
-
-def _made(
-    group: zarr.Group, name: str, kept: Kept, shape: tuple[int, ...], chunks: tuple[int, ...], dims: tuple[str, ...]
-) -> Any:
-    """One array. Its chunks are not compressed: the last digits of numbers do not shrink, and writing is simple."""
-    return group.create_array(
-        name, shape=shape, chunks=chunks, dtype=kept.dtype, fill_value=kept.fill, dimension_names=dims,
-        attributes=kept.attributes, chunk_key_encoding=_KEYS, compressors=None,
-    )  # fmt: skip
+def _notes(path: Path) -> set[str]:
+    """The sweeps that the notes on the chunks of a store speak of."""
+    found = set()
+    for note in (path / MARK).glob("sha256.*"):
+        with suppress(OSError, ValueError, KeyError, TypeError, RecursionError):
+            found.add(str(json.loads(note.read_bytes())["sweep"]))
+    return found
 
 
 def _sweep_in(path: str | PathLike[str]) -> dict[str, Any]:
@@ -173,49 +149,70 @@ def _sweep_in(path: str | PathLike[str]) -> dict[str, Any]:
     if not Path(path).exists():
         raise SpecError(name, allowed="there is no such store")
     if not is_store(path):
+        if _notes(Path(path)):
+            raise SpecError(name, allowed="is damaged: it has no zarr.json", advice=MENDED)
         raise SpecError(name, allowed="is no store of a sweep", advice="give another name ending in .zarr")
-    try:
-        attributes = json.loads((Path(path) / "zarr.json").read_bytes())["attributes"]
-        held: dict[str, Any] = json.loads(attributes["sweep"])
-    except OSError as error:
-        raise SpecError(name, allowed=f"cannot be read: {error.strerror or error}") from error
-    except (ValueError, KeyError, TypeError) as error:
-        raise SpecError(name, allowed="is no store of a sweep of mckibben") from error
-    return held
-
-
-def _check_same(name: str, there: dict[str, Any], here: dict[str, Any]) -> None:
-    """SpecError that says what differs, unless the sweep in a store is the one that is asked for."""
-    here = json.loads(json.dumps(here))  # as it reads back
-    if there == here:
-        return
-    then, now = dict(_leaves(there)), dict(_leaves(here))
-    differing = [key for key in {**now, **then} if then.get(key) != now.get(key)]
-    key = differing[0] if differing else "its form"
-    said = f"holds another sweep: {key} is {_brief(then.get(key))} there and {_brief(now.get(key))} here"
-    more = f" ({len(differing)} differences)" if len(differing) > 1 else ""
-    raise SpecError(name, allowed=said + more, advice="give another name, or --force to delete it (force=True)")
-
-
-def _leaves(value: Any, prefix: str = "") -> Iterator[tuple[str, Any]]:
-    if isinstance(value, dict):
-        for key, item in value.items():
-            yield from _leaves(item, f"{prefix}.{key}" if prefix else key)
-    else:
-        yield prefix, value
-
-
-def _brief(value: Any) -> str:
-    text = "not given" if value is None else json.dumps(value)
-    return text if len(text) <= 60 else f"{text[:57]}..."
+    return sweep_in(Path(path), name)[0]
 
 
 def load(path: str | PathLike[str]) -> xr.Dataset:
-    """The sweep in a store, finished or not, arranged by its fields and read from the disk when used."""
+    """The sweep in a store, finished or not, arranged by its fields and read from the disk when used.
+
+    SpecError for a store that is damaged, by the digests of all that it holds. Designs that are pending hold nothing.
+    """
     _sweep_in(path)
+    held, document = sweep_in(Path(path), str(path))
+    wrong = damage(Path(path), document)
+    if DIGESTS not in document["attributes"] and _notes(Path(path)):
+        wrong = ["zarr.json"]
+    if wrong:
+        more = f" and {len(wrong) - 1} more" if len(wrong) > 1 else ""
+        said = f"is damaged: its description ({wrong[0]}{more}) is not as written"
+        raise SpecError(str(path), allowed=said, advice=MENDED)
     try:
-        stored = xr.open_zarr(path, consolidated=True, decode_times=False)
-        return arranged(stored[[*STATES, *DESIGN]].chunk(design=-1))
-    except (OSError, ValueError, KeyError, TypeError) as error:
+        stored = xr.open_zarr(path, consolidated=True, decode_times=False)[[*STATES, *DESIGN]]
+        stored.attrs.pop(DIGESTS, None)
+        noted, sweep = DIGESTS in document["attributes"], identity_digest(held)
+        count, steps = stored["force"].shape
+        files = ChunkFiles(Path(path), sweep, count, int(held["chunk"]), steps, noted)
+        _check_chunks(str(path), files)
+        return arranged(_without_pending(stored, files.there()).chunk(design=-1))
+    except SpecError:
+        raise
+    except _BROKEN as error:
         said = "is damaged: " + " ".join(str(error).split())
         raise SpecError(str(path), allowed=said, advice="run the sweep again with --force") from error
+
+
+def _check_chunks(name: str, files: ChunkFiles) -> None:
+    """SpecError that names the chunks that are not as written."""
+    damaged = files.damaged()
+    if not damaged:
+        return
+    said = []
+    for index, wrong in list(damaged.items())[:3]:
+        first, last = index * files.chunk, min((index + 1) * files.chunk, files.count) - 1
+        parts = ", ".join(wrong[:3]) + (f" and {len(wrong) - 3} more" if len(wrong) > 3 else "")
+        said.append(f"chunk {index} (designs {first} to {last}: {parts})")
+    more = f" and {len(damaged) - 3} more chunks" if len(damaged) > 3 else ""
+    raise SpecError(
+        name, allowed=f"is damaged: {', '.join(said)}{more} not as written",
+        advice=f"{MENDED}, solving these designs anew",
+    )  # fmt: skip
+
+
+def _without_pending(stored: xr.Dataset, there: np.ndarray) -> xr.Dataset:
+    """The arrays of a store with nothing in the designs of chunks that are not there, whose files are not read."""
+    if there.all():
+        return stored
+    edges = [0, *(np.flatnonzero(np.diff(there)) + 1).tolist(), len(there)]
+    made = {}
+    for name, kept in (STATES | DESIGN).items():
+        data = stored[name].data
+        parts = []
+        for first, last in pairwise(edges):
+            part = data[first:last]
+            kind = object if kept.dtype == "str" else data.dtype
+            parts.append(part if there[first] else dask.array.full(part.shape, kept.fill, kind, chunks=part.chunks))
+        made[name] = (stored[name].dims, dask.array.concatenate(parts), stored[name].attrs)
+    return stored.assign(made)

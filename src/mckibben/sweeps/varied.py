@@ -152,7 +152,7 @@ def from_table(muscle: Muscle, test: Test, designs: Any) -> tuple[Varied, ...]:
     columns = _csv(designs) if isinstance(designs, (str, PathLike)) else _columns(designs)
     found = []
     for head, given in columns:
-        match = _HEAD.fullmatch(head)
+        match = _HEAD.fullmatch(" ".join(head.split()))  # single spaces: many take it a time without end
         if match is None:
             raise SpecError("designs", head, "is no head of a column", 'such as "braid.angle [deg]"')
         name, unit = match.group(1), match.group(2)
