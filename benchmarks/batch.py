@@ -56,7 +56,7 @@ def captured(group: Group, tolerance: float = TOLERANCE) -> dict[str, list[tuple
 
     batches.march, batches.appraised = keep("march", march), keep("appraised", appraised)
     try:
-        batches.solve(group, tolerance)
+        batches.solve_together(group, tolerance)
     finally:
         batches.march, batches.appraised = before
     return calls
@@ -97,7 +97,7 @@ def row(name: str, times: dict[str, Any], off: float) -> dict[str, Any]:
 def accuracy(group: Group, tolerance: float = TOLERANCE) -> float:
     """Largest error of every 37th curve against single runs on many unknowns."""
     worst, some = 0.0, group.take(np.arange(0, len(group), 37))
-    forces = {int(k): one.numbers["force"][d] for one in batches.solve(some, tolerance)
+    forces = {int(k): one.numbers["force"][d] for one in batches.solve_together(some, tolerance)
               for d, k in enumerate(one.group.index)}  # fmt: skip
     for d, k in enumerate(some.index.tolist()):
         angle, wall = (float(x) for x in (some.p.theta0[d], np.sqrt(some.p.R0[d] ** 2 + some.p.A0[d] / np.pi)))

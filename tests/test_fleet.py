@@ -8,7 +8,7 @@ import pytest
 
 import mckibben as mk
 from mckibben.experiments.run import MuscleWarning
-from mckibben.sweeps.batches import Solved, solve
+from mckibben.sweeps.batches import Solved, solve_together
 from mckibben.sweeps.groups import Group, group_of, groups
 from mckibben.sweeps.plan import Piece
 
@@ -50,7 +50,7 @@ def test_a_batch_gives_the_numbers_of_single_runs(ends: str, test: mk.Isometric 
     if ends == "free" and test.kind == "isotonic":
         assert asked == [None] * len(some)
         return
-    (solved,) = solve(joined(asked), 1e-6)
+    (solved,) = solve_together(joined(asked), 1e-6)
     assert solved.group.index.tolist() == list(range(len(some)))
     for d, muscle in enumerate(some[:3]):
         one = singly(muscle, test, 1e-6)
@@ -82,7 +82,7 @@ def by_design(found: list[Solved]) -> dict[int, np.ndarray]:
 def test_what_a_batch_cannot_follow_is_left_to_the_single_solver() -> None:
     test = mk.Isometric(length="55 mm", pressure="0 to 1 bar", points=5)  # pinned, the unpressurised braid folds
     some = [mk.presets.reference(), mk.presets.reference().replace("ends", "pinned")]
-    found = [by_design(solve(group_of(muscle, test), 1e-6)) for muscle in some]
+    found = [by_design(solve_together(group_of(muscle, test), 1e-6)) for muscle in some]
     assert list(found[0]) == [0]
     assert not found[1]
 
@@ -91,9 +91,9 @@ def test_neighbours_in_a_batch_do_not_matter() -> None:
     test = mk.Isometric(length="105 mm", pressure="0 to 1 bar", points=5)
     some = muscles("clamped")
     asked = [group_of(muscle, test) for muscle in some]
-    together = by_design(solve(joined(asked), 1e-4))
+    together = by_design(solve_together(joined(asked), 1e-4))
     bad = group_of(some[0].replace("braid.fibre", mk.Fibre(B1=0.0, B2=0.0, B3=0.0)), test)  # no state
-    mixed = by_design(solve(joined([bad, *asked]), 1e-4))
+    mixed = by_design(solve_together(joined([bad, *asked]), 1e-4))
     assert sorted(together) == list(range(len(some)))
     assert sorted(mixed) == list(range(1, len(some) + 1))
     for k, force in together.items():

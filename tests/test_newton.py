@@ -15,11 +15,12 @@ from mckibben.discretise.spectral import Line
 from mckibben.model.angle import Known, cos, sin, slope, tan
 from mckibben.solver.bench import Bench
 from mckibben.solver.find import find
+from mckibben.solver.follow import follow
 from mckibben.solver.held import Conditions, Held, conditions, rows_of
 from mckibben.solver.implicit import settle
 from mckibben.solver.newton import MOST, WORK, batch_size, bordered, correct
 from mckibben.solver.path import trace
-from mckibben.solver.system import State, System, system
+from mckibben.solver.system import System, Unknowns, system
 
 pytestmark = pytest.mark.solver
 
@@ -38,11 +39,11 @@ def test_newton_step_and_tangents_are_those_of_the_bordered_system(basis: Any, h
     own, which = rows_of(HOLDINGS[held], count)
     random = np.random.default_rng(3)
     u = jnp.asarray(random.standard_normal(basis.unknowns) * (0.002 if isinstance(basis, Spline) else 0.02))
-    state = State(u, jnp.asarray([0.02, 0.4, 0.01][:count]))
+    state = Unknowns(u, jnp.asarray([0.02, 0.4, 0.01][:count]))
     targets = jnp.asarray([1.1 if held == "length" else 0.3, -2.0 if "gas" in held else 0.5, 0.0][:count])
 
     @jax.jit
-    def both(state: State) -> tuple[Any, jax.Array, System, System]:
+    def both(state: Unknowns) -> tuple[Any, jax.Array, System, System]:
         on = place(basis, p, 1.3)
         s, together = system(basis, on, state), system(basis, on, state, together=True)
         c = conditions(own, which, targets, on.unit, s.values, state.loads)
@@ -94,7 +95,7 @@ def test_a_row_of_ones_own_spring_in_series() -> None:
 
     def force(t: Any) -> Any:
         targets = jnp.stack([t, jnp.asarray(1e5 / (unit[0] / unit[2]))])
-        given = State(jnp.asarray(last.u), jnp.asarray(last.loads))
+        given = Unknowns(jnp.asarray(last.u), jnp.asarray(last.loads))
         settled = settle((problem.basis, own), given, bench.p, 2.0, jnp.asarray(which), targets)
         return settled.loads[0] * unit[0] / unit[1]
 
@@ -145,3 +146,20 @@ def test_batches_stay_below_what_jaxlib_divides_among_threads(unknowns: int) -> 
     size = batch_size(unknowns)
     assert 1 <= size <= MOST
     assert size * (unknowns**3 // 3) < WORK or size == 1
+
+
+def test_a_path_keeps_what_its_points_remember() -> None:
+    """Nothing changes a memory yet: every step hands it on, and the states are the same as without."""
+    problem = Bench.of(mk.presets.paper()).problem(12, 1.0)
+    first = find(problem, Held.of(length=0.1, pressure=5e4))
+    targets = np.linspace([0.1 / 0.085, 1.0], [0.11 / 0.085, 1.0], 32) * np.array([1.0, first.loads[1]])
+    memory = {"slip": np.arange(float(problem.basis.points)), "back": np.ones(problem.basis.points, bool)}
+    own, which = rows_of(("length", "pressure"), 2)
+    tracks = [
+        follow((problem.basis, own), problem.p, problem.b, state, which, targets, np.asarray(5), np.asarray(1e-6))
+        for state in (first.state, first.state._replace(memory=memory))
+    ]
+    assert [int(track.good) for track in tracks] == [5, 5]
+    np.testing.assert_allclose(tracks[0].state.u, tracks[1].state.u, rtol=0.0, atol=1e-14)
+    for name, values in memory.items():
+        np.testing.assert_array_equal(tracks[1].state.memory[name][:5], np.tile(values, (5, 1)))

@@ -22,7 +22,7 @@ from mckibben.solver.held import Held, conditions, rows_of, units
 from mckibben.solver.implicit import settle
 from mckibben.solver.newton import bordered
 from mckibben.solver.problem import Basis
-from mckibben.solver.system import State, system
+from mckibben.solver.system import Unknowns, system
 
 pytestmark = pytest.mark.experiments
 
@@ -52,7 +52,7 @@ def state_of(muscle: mk.Muscle, held: dict[str, float]) -> Equilibrium:
 
 
 def results(
-    basis: Basis, tree: Any, names: Any, anew: bool, at: jax.Array, share: jax.Array, b: Any, state: State
+    basis: Basis, tree: Any, names: Any, anew: bool, at: jax.Array, share: jax.Array, b: Any, state: Unknowns
 ) -> Any:
     """Results where numbers and held values are changed to a share of theirs, at w: solved anew, or by `settle`."""
     numbers = at * share
@@ -61,11 +61,11 @@ def results(
     size, (own, which) = units(on.unit), rows_of(names, 2)
     targets, m = numbers[-2:] / jnp.stack([size[name] for name in names]), basis.unknowns
 
-    def newton(_: Any, state: State) -> State:
+    def newton(_: Any, state: Unknowns) -> Unknowns:
         s = system(basis, on, state)
         c = conditions(own, which, targets, on.unit, s.values, state.loads)
         step = jnp.linalg.solve(bordered(s, c), jnp.concatenate([s.rest, c.miss]))
-        return State(state.u - step[:m], state.loads - step[m:])
+        return Unknowns(state.u - step[:m], state.loads - step[m:])
 
     if anew:
         state = jax.lax.fori_loop(0, 8, newton, state)

@@ -44,14 +44,14 @@ def store(whole: Path, tmp_path: Path) -> Path:
 @pytest.fixture
 def solved(monkeypatch: pytest.MonkeyPatch) -> list[int]:
     """The chunks that are solved, by their first design."""
-    first, solve = [], sweeps.solve
+    first, solve = [], sweeps.solve_piece
 
     def counted(piece, *rest):
         fibres, ends = piece.rows[0]
         first.append(2 * OVER["braid.fibres"].index(fibres) + OVER["ends"].index(str(ends)))
         return solve(piece, *rest)
 
-    monkeypatch.setattr(sweeps, "solve", counted)
+    monkeypatch.setattr(sweeps, "solve_piece", counted)
     return first
 
 

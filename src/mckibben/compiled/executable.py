@@ -14,7 +14,7 @@ import jax
 import numpy as np
 from jax.experimental.serialize_executable import deserialize_and_load, serialize
 
-from mckibben.compiled.options import Options, known
+from mckibben.compiled.options import Options, understood
 
 __all__ = ["Executable", "compiled", "loaded", "tracing"]
 
@@ -68,7 +68,7 @@ def compiled(function: Callable[..., Any], name: str, forms: Sequence[Any], opti
             lowered = jax.jit(flat).lower([jax.ShapeDtypeStruct(*form) for form in forms])
         finally:
             tracing.now = False
-    made = lowered.compile(compiler_options=known(options))
+    made = lowered.compile(compiler_options=understood(options))
     return Executable(made, len(forms), structure.unflatten(range(structure.num_leaves)))
 
 

@@ -6,7 +6,7 @@ from typing import Any
 
 import jax
 
-__all__ = ["OPTIONS", "QUICK", "Options", "known", "usual"]
+__all__ = ["OPTIONS", "QUICK", "Options", "understood", "usual"]
 
 Options = dict[str, Any]
 """Options of XLA, as `jax.jit` takes them."""
@@ -27,13 +27,13 @@ def usual() -> Options:
     return QUICK if os.environ.get("MCKIBBEN_COMPILE") == "quick" else OPTIONS
 
 
-def known(options: Options) -> Options:
+def understood(options: Options) -> Options:
     """Those that this compiler takes: none on other devices than the processor, fewer where some no longer exist."""
-    return dict(_known(tuple(options.items())))
+    return dict(_understood(tuple(options.items())))
 
 
 @functools.cache
-def _known(options: tuple[tuple[str, Any], ...]) -> tuple[tuple[str, Any], ...]:
+def _understood(options: tuple[tuple[str, Any], ...]) -> tuple[tuple[str, Any], ...]:
     if jax.default_backend() != "cpu":
         return ()
     return options if _takes(options) else tuple(one for one in options if _takes((one,)))

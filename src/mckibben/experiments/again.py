@@ -14,7 +14,7 @@ from mckibben.measure.judge import Judgement
 from mckibben.measure.report import Part, Sought
 from mckibben.measure.survey import survey
 from mckibben.results.verdict import Verdict
-from mckibben.search.finer import error_of
+from mckibben.search.finer import estimated_error
 from mckibben.search.walk import Look, look
 from mckibben.solver.bench import Bench
 from mckibben.solver.find import equilibrium
@@ -26,6 +26,8 @@ __all__ = ["sought_again"]
 
 def sought_again(bench: Bench, part: Part, b: float, tolerance: float, watch: Watch = lambda k, n: None) -> Part:
     """A step with the states that were not stable sought again; `part` itself where all are."""
+    if not part.path:
+        return part
     verdicts = [Verdict.NOT_CONVERGED] * len(part.path)
     if part.survey is not None:
         verdicts[: part.reached] = [judgement.verdict for judgement in part.survey.verdicts]
@@ -77,7 +79,7 @@ class _Search:
         states = follow_to(here.state.problem, path, here.state, min(LOOSE, self.tolerance))[1:]
         for count, (i, one) in enumerate(zip(way, states, strict=False)):
             seen = look(equilibrium(here.state.problem, one.u, one.loads, one.iterations), self.part.path[i])
-            if not seen.good or error_of(seen.state) > self.tolerance:
+            if not seen.good or estimated_error(seen.state) > self.tolerance:
                 return count
             self.keep(i, seen.verdict, seen)
         return min(len(way), len(states))

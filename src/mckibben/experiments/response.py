@@ -21,7 +21,7 @@ from mckibben.solver.from_rest import approach, reading, rest, wanted
 from mckibben.solver.held import Now, rows_of
 from mckibben.solver.implicit import settle
 from mckibben.solver.problem import Basis
-from mckibben.solver.system import State
+from mckibben.solver.system import Unknowns
 from mckibben.spec import Along, Muscle, SpecError, Step, Test
 
 __all__ = ["differentiable", "response", "settled"]
@@ -68,7 +68,7 @@ def response(
         b = placement(fixed_p, fixed_steps)
         states = approach(basis, fixed_p, b, fixed_steps)
     else:
-        basis, b, states = known(jax.tree.map(jax.lax.stop_gradient, muscle), fixed_steps, tolerance)
+        basis, b, states = solved_states(jax.tree.map(jax.lax.stop_gradient, muscle), fixed_steps, tolerance)
     return _results(basis, b, states, p, steps)
 
 
@@ -95,7 +95,9 @@ def placement(p: Parameters, steps: tuple[Step, ...]) -> Number:
     return crowdings(p, *jnp.stack(rows).T).max()
 
 
-def known(muscle: Muscle, steps: tuple[Step, ...], tolerance: float) -> tuple[Basis, float, tuple[State, ...]]:
+def solved_states(
+    muscle: Muscle, steps: tuple[Step, ...], tolerance: float
+) -> tuple[Basis, float, tuple[Unknowns, ...]]:
     """Discretisation, placement and states of every step by the robust search; NaN where there are none."""
     bench = Bench.of(muscle)
     parts = solved(bench, steps, tolerance)
@@ -108,11 +110,13 @@ def known(muscle: Muscle, steps: tuple[Step, ...], tolerance: float) -> tuple[Ba
         loads: Array = jnp.full((part.asked, problem.loads), jnp.nan)
         if part.survey is not None:
             u, loads = u.at[: part.reached].set(part.survey.u), loads.at[: part.reached].set(part.survey.loads)
-        states.append(State(u, loads))
+        states.append(Unknowns(u, loads))
     return problem.basis, problem.b, tuple(states)
 
 
-def settled(basis: Basis, p: Parameters, b: Number, near: State, step: Step, present: Now, row: Any = None) -> State:
+def settled(
+    basis: Basis, p: Parameters, b: Number, near: Unknowns, step: Step, present: Now, row: Any = None
+) -> Unknowns:
     """The states of a step (or the one in its `row`) as functions of the numbers, from states that are known."""
     asked = wanted(step, present, place(basis, p, b))
     own, rows = rows_of(asked.names, near.loads.shape[-1])
@@ -120,13 +124,13 @@ def settled(basis: Basis, p: Parameters, b: Number, near: State, step: Step, pre
     return one(near, asked.targets[row]) if row is not None else jax.vmap(one)(near, asked.targets)
 
 
-def _settled_one(static: Any, p: Parameters, b: Number, rows: Array, near: State, target: Array) -> State:
+def _settled_one(static: Any, p: Parameters, b: Number, rows: Array, near: Unknowns, target: Array) -> Unknowns:
     return settle(static, near, p, b, rows, target)
 
 
 @kernel
 def _results(
-    basis: Basis, b: Number, states: tuple[State, ...], p: Parameters, steps: tuple[Step, ...]
+    basis: Basis, b: Number, states: tuple[Unknowns, ...], p: Parameters, steps: tuple[Step, ...]
 ) -> dict[str, Array]:
     """Results at states that are known, as functions of the numbers."""
     on = place(basis, p, b)

@@ -24,7 +24,7 @@ from mckibben.results.verdict import Verdict
 from mckibben.solver.bench import Bench
 from mckibben.solver.from_rest import reading, rest
 from mckibben.solver.problem import Basis, Problem
-from mckibben.solver.system import State
+from mckibben.solver.system import Unknowns
 from mckibben.spec import Muscle, SpecError, Step, Test, numbers
 from mckibben.spec.declared import Declared, evolved
 from mckibben.spec.errors import nearest
@@ -161,7 +161,7 @@ def _derivatives(
     while first and _goes_on(steps[first]):
         first, rows = first - 1, [-1, *rows]
     surveys = [part.survey for part in parts[first : index + 1] if part.survey is not None]
-    states = tuple(State(view.u[k], view.loads[k]) for view, k in zip(surveys, rows, strict=True))
+    states = tuple(Unknowns(view.u[k], view.loads[k]) for view, k in zip(surveys, rows, strict=True))
     problem, plain = surveys[-1].problem, evolved(muscle, name=None, assumed=())
     value, slope = _slopes(problem.basis, first, problem.b, states, np.asarray(row), plain, test)
     return np.array(value), np.array(slope), _natural(problem)
@@ -174,7 +174,7 @@ def _goes_on(step: Step) -> bool:
 
 @partial(kernel, static_argnums=(0, 1))
 def _slopes(
-    basis: Basis, first: int, b: Number, states: tuple[State, ...], row: Array, muscle: Muscle, test: Test
+    basis: Basis, first: int, b: Number, states: tuple[Unknowns, ...], row: Array, muscle: Muscle, test: Test
 ) -> tuple[Array, Array]:
     """The `OBSERVED` results at the last of the states, and their derivatives by every number (numbers, results).
 

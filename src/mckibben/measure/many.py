@@ -13,7 +13,7 @@ from mckibben.discretise.fields import Placed
 from mckibben.measure.read import read, stable
 from mckibben.solver.batch import moved, newton
 from mckibben.solver.problem import Basis
-from mckibben.solver.system import State, assemble, localise, residual
+from mckibben.solver.system import Unknowns, assemble, localise, residual
 
 __all__ = ["Appraised", "Polished", "appraised", "polished"]
 
@@ -28,7 +28,7 @@ class Appraised(NamedTuple):
     antisymmetric: Bool[Array, ""]  #: stable against antisymmetric disturbances
 
 
-def appraise(basis: Basis, on: Placed, state: State) -> Appraised:
+def appraise(basis: Basis, on: Placed, state: Unknowns) -> Appraised:
     """A state, as it is."""
     local = localise(basis, on, state)
     s = assemble(basis, on, local, len(state.loads), together=True)
@@ -42,7 +42,7 @@ def appraise(basis: Basis, on: Placed, state: State) -> Appraised:
 
 
 @kernel
-def appraised(basis: Basis, on: Placed, states: State, count: Int[Array, ""]) -> Appraised:
+def appraised(basis: Basis, on: Placed, states: Unknowns, count: Int[Array, ""]) -> Appraised:
     """The first `count` states (n, batch, ...) of every muscle; leaves lead with (n, batch) and are zero beyond."""
 
     def at(k: Any) -> Appraised:
@@ -59,7 +59,7 @@ def appraised(basis: Basis, on: Placed, states: State, count: Int[Array, ""]) ->
 class Polished(NamedTuple):
     """States (n, batch, ...) after Newton's last step, and how large it was."""
 
-    states: State
+    states: Unknowns
     change: Float[Array, "n batch"]  #: largest change of psi [rad]
 
 
@@ -67,7 +67,7 @@ class Polished(NamedTuple):
 def polished(
     basis: Basis,
     on: Placed,
-    states: State,
+    states: Unknowns,
     change: Float[Array, "n batch"],
     which: Int[Array, "2"],
     targets: Float[Array, "n batch 2"],
@@ -82,7 +82,7 @@ def polished(
     Where it is so already nothing is done: the error that is left is about the square of the last step.
     """
 
-    def step(now: tuple[State, Array, Array], target: Array) -> tuple[State, Array, Array]:
+    def step(now: tuple[Unknowns, Array, Array], target: Array) -> tuple[Unknowns, Array, Array]:
         state, _, tries = now
         by = jax.vmap(lambda on, state, target: newton(basis, on, which, state, target).step)(on, state, target)
         far = jax.vmap(lambda on, du: moved(basis, on, du))(on, by.u)

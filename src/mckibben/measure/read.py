@@ -27,7 +27,7 @@ from mckibben.model.tension import conserved, tension
 from mckibben.solver.newton import batch_size, positive
 from mckibben.solver.problem import Basis
 from mckibben.solver.stability import stiffnesses
-from mckibben.solver.system import Local, State, System, assemble, localise, residual
+from mckibben.solver.system import Local, System, Unknowns, assemble, localise, residual
 
 __all__ = ["ENERGIES", "NODES", "Reading", "Stable", "read", "read_many", "stable"]
 
@@ -52,7 +52,7 @@ def nodes(basis: Basis) -> int:
     return NODES // 2 + 1 if basis.half else NODES
 
 
-def read(basis: Basis, on: Placed, state: State) -> Reading:
+def read(basis: Basis, on: Placed, state: Unknowns) -> Reading:
     """Everything of one state."""
     p, sampling, operators = on.p, basis.sampling(nodes(basis)), basis.operators()
     F, P = state.loads[0] * on.unit[0] / on.unit[1], state.loads[1] * on.unit[0] / on.unit[2]
@@ -190,7 +190,7 @@ AT_ONCE = 8
 
 @kernel
 def read_many(
-    basis: Basis, p: Parameters, b: Number, states: State, volume: Bool[Array, ""], count: Int[Array, ""]
+    basis: Basis, p: Parameters, b: Number, states: Unknowns, volume: Bool[Array, ""], count: Int[Array, ""]
 ) -> tuple[Reading, Stable, Array]:
     """Readings, stability and residuals of the first `count` of n states; beyond, what happens to be there.
 
@@ -199,7 +199,7 @@ def read_many(
     on, n = place(basis, p, b), len(states.u)
     size = min(n, AT_ONCE, batch_size(basis.unknowns))
 
-    def one(state: State) -> tuple[Reading, Stable, Array]:
+    def one(state: Unknowns) -> tuple[Reading, Stable, Array]:
         local = localise(basis, on, state)
         s = assemble(basis, on, local, len(state.loads))
         return read(basis, on, state), stable(basis, on, local, s, volume), residual(s, state.loads)

@@ -14,9 +14,9 @@ from mckibben.solver.follow import padded
 from mckibben.solver.held import GASES
 from mckibben.solver.problem import Basis, Problem
 from mckibben.solver.stability import count_modes, of_states
-from mckibben.solver.system import State
+from mckibben.solver.system import Unknowns
 
-__all__ = ["PLAIN_SLOPE", "Survey", "error_of", "errors", "padded_states", "prepare", "survey"]
+__all__ = ["PLAIN_SLOPE", "Survey", "error_bound", "errors", "padded_states", "prepare", "survey"]
 
 ROUNDING = 1e-11
 """Relative error that rounding leaves in a force or length at best."""
@@ -70,19 +70,19 @@ def _mirrored(name: str, half: np.ndarray) -> np.ndarray:
 
 def prepare(basis: Basis, p: Parameters, b: float, count: int) -> None:
     """Have what a survey of `count` states calls compiled in the background (see `compiled.kernel`)."""
-    states = State(np.empty((count, basis.unknowns)), np.empty((count, 3 if basis.closes else 2)))
+    states = Unknowns(np.empty((count, basis.unknowns)), np.empty((count, 3 if basis.closes else 2)))
     read_many.prepare(basis, p, b, padded_states(states), np.array(False), np.array(count))
 
 
-def padded_states(states: State) -> State:
+def padded_states(states: Unknowns) -> Unknowns:
     """States repeated up to 1 or a power of two from 32, so that few shapes are compiled."""
-    return states if len(states.u) == 1 else State(padded(states.u), padded(states.loads))
+    return states if len(states.u) == 1 else Unknowns(padded(states.u), padded(states.loads))
 
 
 def read_states(problem: Problem, u: np.ndarray, loads: np.ndarray, volume: bool) -> tuple[Reading, Stable, np.ndarray]:
     """Readings of states u (n, m) under loads (n, l), as NumPy arrays."""
     n = len(u)
-    states = padded_states(State(u, loads))
+    states = padded_states(Unknowns(u, loads))
     reading, stable, left = read_many(problem.basis, problem.p, problem.b, states, np.array(volume), np.array(n))
     cut = Reading(
         {name: np.asarray(values)[:n] for name, values in reading.numbers.items()},
@@ -103,7 +103,7 @@ def survey(problem: Problem, u: np.ndarray, loads: np.ndarray, held: tuple[Any, 
         modes = [attrs.evolve(PLAIN, antisymmetric=None, softest_antisymmetric=None)] * len(u)
     open_ones = np.flatnonzero(~certain)
     if len(open_ones):
-        states = padded_states(State(u[open_ones], loads[open_ones]))
+        states = padded_states(Unknowns(u[open_ones], loads[open_ones]))
         counted = count_modes(problem, of_states(problem, *states[:2], held), pressure_held="volume" not in held)
         for k, one in zip(open_ones, counted, strict=False):
             modes[k] = one
@@ -114,7 +114,7 @@ def survey(problem: Problem, u: np.ndarray, loads: np.ndarray, held: tuple[Any, 
     verdicts = [judge(mode, shape, "length" in held) for mode, shape in zip(modes, shapes, strict=True)]
     variation, tail = reading.conserved_variation, reading.coefficient_tail
     numbers = reading.numbers | {
-        "error_estimate": error_of(variation, tail), "conserved_variation": variation, "coefficient_tail": tail,
+        "error_estimate": error_bound(variation, tail), "conserved_variation": variation, "coefficient_tail": tail,
     }  # fmt: skip
     return Survey(problem, u, loads, numbers, reading.fields, residual, modes, verdicts)
 
@@ -122,10 +122,10 @@ def survey(problem: Problem, u: np.ndarray, loads: np.ndarray, held: tuple[Any, 
 def errors(problem: Problem, u: np.ndarray, loads: np.ndarray) -> np.ndarray:
     """Estimated relative error of force and length of states u (n, m) under loads (n, l)."""
     reading = read_states(problem, u, loads, False)[0]
-    return error_of(reading.conserved_variation, reading.coefficient_tail)
+    return error_bound(reading.conserved_variation, reading.coefficient_tail)
 
 
-def error_of(conserved_variation: np.ndarray, coefficient_tail: np.ndarray) -> np.ndarray:
+def error_bound(conserved_variation: np.ndarray, coefficient_tail: np.ndarray) -> np.ndarray:
     """The smaller of two bounds that hold on random muscles.
 
     In validation/ the variation of the conserved quantity fell short of the true error by 2.5 at most. The tail of the

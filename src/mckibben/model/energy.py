@@ -17,7 +17,7 @@ from mckibben.model.kinematics import angle_rate, height_rate, volume_rate
 from mckibben.model.parameters import Number, Parameters
 from mckibben.model.point import Point
 
-__all__ = ["LOADS", "QUANTITIES", "lagrangian", "scales", "stored", "works"]
+__all__ = ["LOADS", "QUANTITIES", "lagrangian", "remember", "scales", "stored", "works"]
 
 QUANTITIES = ("energy", "length", "volume", "closure")
 """What densities along the length integrate to: stored energy, length h, volume V, and theta(H0) - theta(0)."""
@@ -32,6 +32,11 @@ def stored(at: Point, p: Parameters, memory: Any = None) -> Number:
     `memory` is what a material point keeps of the state before; nothing here has one yet.
     """
     return sum(fibre_densities(at, p)) + chamber_density(at, p)
+
+
+def remember(at: Point, p: Parameters, memory: Any) -> Any:
+    """What a material point keeps once it has been in a state, from what it kept before; nothing here changes it."""
+    return memory
 
 
 def works(at: Point, p: Parameters) -> tuple[Number, Number, Number]:

@@ -5,7 +5,7 @@ from collections.abc import Iterator
 import attrs
 
 from mckibben.results.verdict import Verdict
-from mckibben.search.finer import error_of, sharpened
+from mckibben.search.finer import estimated_error, sharpened
 from mckibben.search.sideways import tip, tip_on
 from mckibben.search.starts import starts
 from mckibben.search.walk import BranchEnd, Look, branch_end, look
@@ -50,7 +50,7 @@ def way_there(bench: Bench, held: Held, b: float, tolerance: float, roughly: boo
     end: BranchEnd | None = None
     for size, share in REFINED:
         end = branch_end(bench.problem(size, b), first, held, share, coarse=end)
-        if roughly or (size >= SEARCH and (end.last is None or error_of(end.last.state) <= tolerance)):
+        if roughly or (size >= SEARCH and (end.last is None or estimated_error(end.last.state) <= tolerance)):
             break
     assert end is not None
     return Way(first, end)

@@ -3,7 +3,7 @@
 import attrs
 import numpy as np
 
-from mckibben.search.finer import error_of
+from mckibben.search.finer import estimated_error
 from mckibben.solver.bench import LADDER, Bench
 from mckibben.solver.equilibrium import Equilibrium
 from mckibben.solver.find import find
@@ -39,7 +39,7 @@ def stretched(bench: Bench, failed: Equilibrium, held: Held, tolerance: float) -
         if finer is None:
             break
         state = finer
-        if error_of(state) <= tolerance:
+        if estimated_error(state) <= tolerance:
             break
     return state
 

@@ -18,9 +18,9 @@ from mckibben.solver.equilibrium import Equilibrium
 from mckibben.solver.find import equilibrium, inside
 from mckibben.solver.held import Held, conditions, rows_of, targets_of
 from mckibben.solver.newton import bordered
-from mckibben.solver.path import Rows, Trace, Watch
+from mckibben.solver.path import Arriving, Trace, Watch
 from mckibben.solver.problem import Basis, Problem
-from mckibben.solver.system import State, system
+from mckibben.solver.system import Unknowns, system
 
 __all__ = ["branch"]
 
@@ -40,7 +40,7 @@ class Linear(NamedTuple):
 
 @kernel
 def linearised(
-    static: tuple[Basis, Any], p: Parameters, b: Number, state: State, which: Int[Array, " l"], targets: Array
+    static: tuple[Basis, Any], p: Parameters, b: Number, state: Unknowns, which: Int[Array, " l"], targets: Array
 ) -> Linear:
     """The bordered system of `newton.bordered`."""
     basis, own = static
@@ -65,7 +65,7 @@ class _Branch:
         self.weights = _weights(problem, self.span if loads_vary else max(1.0, float(np.abs(start.loads).max())))
 
     def at(self, w: np.ndarray) -> Linear:
-        state = State(w[: self.size], w[self.size :])
+        state = Unknowns(w[: self.size], w[self.size :])
         found = linearised(self.static, self.problem.p, self.problem.b, state, self.which, self.targets)
         return Linear(*map(np.array, found))
 
@@ -115,7 +115,7 @@ def branch(problem: Problem, start: Equilibrium, path: Sequence[Held], watch: Wa
     """
     n, on = len(path), _Branch(problem, start, path)
 
-    def advance(rows: Rows) -> str:
+    def advance(rows: Arriving) -> str:
         rows.add(start.u, start.loads, 0)
         w = np.concatenate([start.u, start.loads])
         tangent = on.tangent(w, None)
@@ -136,7 +136,7 @@ def branch(problem: Problem, start: Equilibrium, path: Sequence[Held], watch: Wa
                 return "the branch was followed to its end"
         return "the branch goes on: give more points"
 
-    return Rows.of(problem, n).traced(advance)
+    return Arriving.of(problem, n).traced(advance)
 
 
 def _weights(problem: Problem, size: float) -> np.ndarray:

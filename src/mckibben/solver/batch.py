@@ -18,9 +18,9 @@ from mckibben.solver.follow import Guess, first_guess, kept_going, predict
 from mckibben.solver.held import conditions
 from mckibben.solver.newton import Correction, correct
 from mckibben.solver.problem import Basis, slopes
-from mckibben.solver.system import State, system
+from mckibben.solver.system import Unknowns, system
 
-__all__ = ["Arrival", "March", "Rows", "march", "moved", "newton"]
+__all__ = ["Arrival", "Course", "March", "march", "moved", "newton"]
 
 FIRST_STEP = 0.25
 """First step, over the way from rest to the first state."""
@@ -40,7 +40,7 @@ TRIES = 4
 """Corrections of one step before it counts as too long."""
 
 
-def newton(basis: Basis, on: Placed, which: Array, state: State, target: Array) -> Correction:
+def newton(basis: Basis, on: Placed, which: Array, state: Unknowns, target: Array) -> Correction:
     """One Newton step towards what is held."""
     s = system(basis, on, state, together=True)
     return correct(s, conditions((), which, target, on.unit, s.values, state.loads))
@@ -60,11 +60,11 @@ class Arrival(NamedTuple):
 
 
 class _Way(NamedTuple):
-    good: State
-    tangents: State
+    good: Unknowns
+    tangents: Unknowns
     t: Array
     dt: Array
-    state: State
+    state: Unknowns
     systems: Array
     tries: Array  #: corrections of this step
     done: Array
@@ -74,11 +74,11 @@ def _either(first: Array, one: Any, other: Any) -> Any:
     return jax.tree.map(lambda a, b: jnp.where(first, a, b), one, other)
 
 
-def _plus(state: State, change: State) -> State:
+def _plus(state: Unknowns, change: Unknowns) -> Unknowns:
     return jax.tree.map(jnp.add, state, change)
 
 
-def approach(basis: Basis, on: Placed, which: Array, rest: Array, target: Array, limit: int) -> Arrival:
+def arrive(basis: Basis, on: Placed, which: Array, rest: Array, target: Array, limit: int) -> Arrival:
     """From the undeformed muscle, which rests at `rest`, to `target`: the pressure first, which stretches the fibres.
 
     Steps double as long as Newton follows; at most `limit` systems are solved.
@@ -91,7 +91,7 @@ def approach(basis: Basis, on: Placed, which: Array, rest: Array, target: Array,
         then = jnp.clip((t - corner) / (1.0 - corner), 0.0, 1.0)
         return rest + (target - rest) * jnp.stack([then, first])
 
-    def ahead(good: State, tangents: State, t: Array, dt: Array) -> State:
+    def ahead(good: Unknowns, tangents: Unknowns, t: Array, dt: Array) -> Unknowns:
         return jax.tree.map(lambda now, by: now + by @ (at(t + dt) - at(t)), good, tangents)
 
     def going(now: _Way) -> Array:
@@ -113,7 +113,7 @@ def approach(basis: Basis, on: Placed, which: Array, rest: Array, target: Array,
         return _Way(good, tangents, t, dt, state, now.systems + 1, tries, taken & last)
 
     zero, none = jnp.zeros(()), jnp.zeros((), int)
-    blank = State(jnp.zeros(basis.unknowns), jnp.zeros(2))
+    blank = Unknowns(jnp.zeros(basis.unknowns), jnp.zeros(2))
     c = step(blank, rest)
     dt, first = jnp.asarray(FIRST_STEP), c.step
     start = _Way(first, c.tangents, zero, dt, ahead(first, c.tangents, zero, dt), none + 1, none, jnp.array(False))
@@ -121,19 +121,19 @@ def approach(basis: Basis, on: Placed, which: Array, rest: Array, target: Array,
     return Arrival(first_guess(end.good)._replace(tangents=end.tangents), end.done, end.systems)
 
 
-class Rows(NamedTuple):
+class Course(NamedTuple):
     """States of one path."""
 
-    state: State  #: (n, m) and (n, l)
+    state: Unknowns  #: (n, m) and (n, l)
     change: Float[Array, " n"]  #: largest change of psi [rad] in the last correction
     good: Bool[Array, " n"]  #: stable under what is held, and near the state before
 
 
-def walk(basis: Basis, on: Placed, g: Guess, which: Array, targets: Array, count: Array, corrections: int) -> Rows:
+def go_on(basis: Basis, on: Placed, g: Guess, which: Array, targets: Array, count: Array, corrections: int) -> Course:
     """Through targets (n, 2), of which `count` count, from a state at targets[0] (which is corrected too)."""
     n = len(targets)
 
-    def advance(k: Array, carry: tuple[Guess, Rows]) -> tuple[Guess, Rows]:
+    def advance(k: Array, carry: tuple[Guess, Course]) -> tuple[Guess, Course]:
         g, rows = carry
         now, last = targets[k], targets[jnp.maximum(k - 1, 0)]
         state = predict(g, last - targets[jnp.maximum(k - 2, 0)], now - last)
@@ -141,7 +141,7 @@ def walk(basis: Basis, on: Placed, g: Guess, which: Array, targets: Array, count
             c = newton(basis, on, which, state, now)
             state = _plus(state, c.step)
         near = moved(basis, on, state.u - g.now.u) < LARGEST_CHANGE
-        filled = Rows(
+        filled = Course(
             jax.tree.map(lambda row, one: row.at[k].set(one), rows.state, state),
             rows.change.at[k].set(moved(basis, on, c.step.u)),
             rows.good.at[k].set(c.stable & near),
@@ -149,7 +149,7 @@ def walk(basis: Basis, on: Placed, g: Guess, which: Array, targets: Array, count
         return kept_going(g, state, c.tangents, now - last), filled
 
     rooms = jax.tree.map(lambda x: jnp.zeros((n, *x.shape)), g.now)
-    blank = Rows(rooms, jnp.full(n, jnp.inf), jnp.zeros(n, bool))
+    blank = Course(rooms, jnp.full(n, jnp.inf), jnp.zeros(n, bool))
     return jax.lax.fori_loop(0, count, advance, (g, blank))[1]
 
 
@@ -158,7 +158,7 @@ class March(NamedTuple):
 
     reached: Bool[Array, ""]
     systems: Int[Array, ""]  #: solved on the way to the first state
-    rows: Rows
+    rows: Course
 
 
 @partial(kernel, static_argnames=("limit", "corrections"))
@@ -176,7 +176,7 @@ def march(
     """Every muscle from `rest` to its first target and along the others; all quantities dimensionless."""
 
     def one(on: Placed, rest: Array, targets: Array) -> March:
-        first = approach(basis, on, which, rest, targets[0], limit)
-        return March(first.reached, first.systems, walk(basis, on, first.guess, which, targets, count, corrections))
+        first = arrive(basis, on, which, rest, targets[0], limit)
+        return March(first.reached, first.systems, go_on(basis, on, first.guess, which, targets, count, corrections))
 
     return jax.vmap(one)(on, rest, targets)

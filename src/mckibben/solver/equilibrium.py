@@ -5,7 +5,7 @@ import numpy as np
 
 from mckibben.solver.held import Now, read_rows
 from mckibben.solver.problem import Problem
-from mckibben.solver.system import State
+from mckibben.solver.system import Unknowns
 
 __all__ = ["Equilibrium"]
 
@@ -24,9 +24,9 @@ class Equilibrium:
     message: str = "converged"
 
     @property
-    def state(self) -> State:
+    def state(self) -> Unknowns:
         """The unknowns."""
-        return State(self.u, self.loads)
+        return Unknowns(self.u, self.loads)
 
     @property
     def now(self) -> Now:

@@ -9,7 +9,7 @@ from mckibben.solver.equilibrium import Equilibrium
 from mckibben.solver.follow import follow_to
 from mckibben.solver.held import ROWS, Held, targets_of
 from mckibben.solver.problem import CLOSURE, LENGTH, VOLUME, Problem
-from mckibben.solver.trust_region import Solved, Task, imbalance, minimise
+from mckibben.solver.trust_region import Minimum, Task, imbalance, minimise
 
 __all__ = ["along", "at_rest", "embedded", "equilibrium", "find", "refine"]
 
@@ -54,7 +54,7 @@ def _minimum(
         admissible=inside,
         leash=leash,
     )
-    return _solved(problem, minimise(task, u, radius))
+    return _as_equilibrium(problem, minimise(task, u, radius))
 
 
 def inside(theta: Any) -> bool:
@@ -62,7 +62,7 @@ def inside(theta: Any) -> bool:
     return bool(np.isfinite(theta).all() and theta.min() > 0.0 and theta.max() < np.pi / 2)
 
 
-def _solved(problem: Problem, solved: Solved) -> Equilibrium:
+def _as_equilibrium(problem: Problem, solved: Minimum) -> Equilibrium:
     return Equilibrium(
         problem,
         solved.u,

@@ -1,6 +1,7 @@
 """Along a path of states in compiled code: a cubic or tangent guess, Newton, a stability check.
 
-Where a step cannot be taken the function stops and says how many states are good; nothing is lost.
+A step that cannot be taken at once is taken in parts. Where that fails too the function stops and says how many states
+are good; nothing is lost.
 """
 
 from collections.abc import Sequence
@@ -19,7 +20,7 @@ from mckibben.solver.equilibrium import Equilibrium
 from mckibben.solver.held import Held, conditions, rows_of, targets_of
 from mckibben.solver.newton import Correction, correct
 from mckibben.solver.problem import Basis, Problem, slopes
-from mckibben.solver.system import State, system
+from mckibben.solver.system import Unknowns, remembered, system
 
 __all__ = ["Followed", "Guess", "Track", "follow", "follow_to", "kept_going", "padded", "predict", "prepare"]
 
@@ -27,12 +28,14 @@ CORRECTIONS = 8
 """Newton systems a step may take; a good one needs one or two."""
 LARGEST_CHANGE = 0.6
 """Largest change of psi [rad] from state to state that is trusted to stay on the branch."""
+SMALLEST = 1.0 / 64.0
+"""Smallest part of a step."""
 
 
 class Track(NamedTuple):
     """States along a path."""
 
-    state: State  #: (n, m) and (n, l)
+    state: Unknowns  #: (n, m) and (n, l), and what the points keep, step by step
     iterations: Int[Array, " n"]
     good: Int[Array, ""]  #: number of states reached, the given first one included
 
@@ -40,28 +43,28 @@ class Track(NamedTuple):
 class Guess(NamedTuple):
     """Where the next state starts from: what is known of the last two."""
 
-    now: State
-    before: State
-    slope: State  #: change of the state for the step from `before` to `now`, taken at `before`
-    tangents: State  #: change of the state by the targets, at `now`
+    now: Unknowns
+    before: Unknowns
+    slope: Unknowns  #: change of the state for the step from `before` to `now`, taken at `before`
+    tangents: Unknowns  #: change of the state by the targets, at `now`
 
 
-def first_guess(state: State) -> Guess:
+def first_guess(state: Unknowns) -> Guess:
     """Of a path that begins at a state."""
-    none = jax.tree.map(jnp.zeros_like, state)
+    none = jax.tree.map(jnp.zeros_like, state._replace(memory=None))
     count = len(state.loads)
     return Guess(state, state, none, jax.tree.map(lambda x: jnp.zeros((*x.shape, count)), none))
 
 
 class _Step(NamedTuple):
-    state: State
-    tangents: State
+    state: Unknowns
+    tangents: Unknowns
     change: Array  #: largest change of an unknown in the last correction
     iterations: Array
     stable: Array
 
 
-def _take(newton: Any, guess: State, good: State, tolerance: Array) -> _Step:
+def _take(newton: Any, guess: Unknowns, good: Unknowns, tolerance: Array) -> _Step:
     """Correct a guess until the last step, whose square is the error that is left, is below tolerance.
 
     A guess that is no minimum went too far from the last good state: it is taken back by half.
@@ -73,9 +76,9 @@ def _take(newton: Any, guess: State, good: State, tolerance: Array) -> _Step:
     def again(step: _Step) -> _Step:
         c: Correction = newton(step.state)
         change = jnp.abs(c.step.u).max()
-        state = jax.tree.map(
-            lambda now, by, last: jnp.where(c.stable, now + by, 0.5 * (now + last)), step.state, c.step, good
-        )
+        parts = zip(step.state[:2], c.step[:2], good[:2], strict=True)
+        u, loads = (jnp.where(c.stable, now + by, 0.5 * (now + last)) for now, by, last in parts)
+        state = step.state._replace(u=u, loads=loads)
         return _Step(state, c.tangents, jnp.where(c.stable, change, jnp.inf), step.iterations + 1, c.stable)
 
     far, none = jnp.asarray(jnp.inf), jnp.zeros((), int)
@@ -88,7 +91,7 @@ def follow(
     static: tuple[Basis, Any],
     p: Parameters,
     b: Number,
-    state: State,
+    state: Unknowns,
     which: Int[Array, " l"],
     targets: Float[Array, "n l"],
     count: Int[Array, ""],
@@ -102,41 +105,62 @@ def follow(
     on, n = place(basis, p, b), len(targets)
     psi = slopes(basis, on)
 
-    def advance(carry: tuple[Track, Guess, Array]) -> tuple[Track, Guess, Array]:
-        track, g, _ = carry
+    def advance(now: _Going) -> _Going:
+        track, g = now.track, now.guess
         k = track.good  # for k = 0 the given state is corrected where it stands, which also gives the tangents
-        now, last = targets[k], targets[jnp.maximum(k - 1, 0)]
+        begin, end = targets[jnp.maximum(k - 1, 0)], targets[k]
+        whole = (now.share + now.part >= 1.0) | (k == 0)
+        here, aim = _between(begin, end, now.share), jnp.where(whole, end, _between(begin, end, now.share + now.part))
 
-        def newton(state: State) -> Correction:
+        def newton(state: Unknowns) -> Correction:
             s = system(basis, on, state)
-            return correct(s, conditions(own, which, now, on.unit, s.values, state.loads))
+            return correct(s, conditions(own, which, aim, on.unit, s.values, state.loads))
 
-        guess = predict(g, last - targets[jnp.maximum(k - 2, 0)], now - last)
-        step = _take(newton, guess, g.now, tolerance)
+        step = _take(newton, predict(g, now.done, aim - here), g.now, tolerance)
         moved = jnp.abs(psi @ (step.state.u - g.now.u)).max()
         ok = (step.change <= tolerance) & (moved < LARGEST_CHANGE) & step.stable & jnp.isfinite(step.state.u).all()
         ok = ok | (k == 0)
+        reached = remembered(basis, on, step.state)
         kept = Track(
-            jax.tree.map(lambda row, one: row.at[k].set(one), track.state, step.state),
-            track.iterations.at[k].set(step.iterations),
-            jnp.where(ok, k + 1, k),
+            jax.tree.map(lambda row, one: row.at[k].set(one), track.state, reached),
+            track.iterations.at[k].add(step.iterations),
+            jnp.where(ok & whole, k + 1, k),
         )
-        return kept, kept_going(g, step.state, step.tangents, now - last), ok
+        further = kept_going(g, reached, step.tangents, aim - here)
+        return _Going(
+            kept,
+            jax.tree.map(lambda new, old: jnp.where(ok, new, old), further, g),
+            jnp.where(ok, aim - here, now.done),
+            jnp.where(ok, jnp.where(whole, 0.0, now.share + now.part), now.share),
+            jnp.where(ok, jnp.minimum(2.0 * now.part, 1.0), 0.5 * now.part),
+        )
 
-    rooms = jax.tree.map(lambda x: jnp.zeros((n, *x.shape)), state)
+    rooms = jax.tree.map(lambda x: jnp.zeros((n, *x.shape), x.dtype), state)
     track = Track(rooms, jnp.zeros(n, int), jnp.zeros((), int))
-    track, *_ = jax.lax.while_loop(
-        lambda carry: carry[2] & (carry[0].good < count), advance, (track, first_guess(state), jnp.array(True))
-    )
-    return track
+    start = _Going(track, first_guess(state), jnp.zeros_like(targets[0]), jnp.zeros(()), jnp.ones(()))
+    return jax.lax.while_loop(lambda now: (now.part >= SMALLEST) & (now.track.good < count), advance, start).track
 
 
-def kept_going(g: Guess, state: State, tangents: State, step: Array) -> Guess:
+class _Going(NamedTuple):
+    """How far a path is followed."""
+
+    track: Track
+    guess: Guess
+    done: Array  #: change of the targets in the last step
+    share: Array  #: how much of the way to the next state lies behind
+    part: Array  #: how much of it is tried next
+
+
+def _between(begin: Array, end: Array, share: Array) -> Array:
+    return begin + (end - begin) * share
+
+
+def kept_going(g: Guess, state: Unknowns, tangents: Unknowns, step: Array) -> Guess:
     """What is known after one more state."""
     return Guess(state, g.now, jax.tree.map(lambda by: by @ step, g.tangents), tangents)
 
 
-def predict(g: Guess, done: Array, ahead: Array) -> State:
+def predict(g: Guess, done: Array, ahead: Array) -> Unknowns:
     """The cubic through the last two states with their tangents where the path goes straight on, else the tangent."""
     length, past = jnp.linalg.norm(ahead), jnp.linalg.norm(done)
     ratio = length / jnp.maximum(past, 1e-300)
@@ -148,7 +172,7 @@ def predict(g: Guess, done: Array, ahead: Array) -> State:
         cubic = cubic + (3 * t**2 - 2 * t**3) * now + (t**3 - t**2) * (tangents @ done)
         return jnp.where(straight, cubic, now + tangents @ ahead)
 
-    return jax.tree.map(of, *g)
+    return g.now._replace(u=of(*(one.u for one in g)), loads=of(*(one.loads for one in g)))
 
 
 def padded(targets: np.ndarray) -> np.ndarray:
@@ -179,7 +203,7 @@ def prepare(basis: Basis, p: Parameters, b: float, count: int) -> None:
     """Have what follows a path of `count` states compiled in the background (see `compiled.kernel`)."""
     loads = 3 if basis.closes else 2
     own, which = rows_of(("length", "pressure"), loads)
-    state = State(np.empty(basis.unknowns), np.empty(loads))
+    state = Unknowns(np.empty(basis.unknowns), np.empty(loads))
     follow.prepare(
         (basis, own), p, b, state, which, padded(np.empty((count, loads))), np.asarray(count), np.asarray(0.0)
     )  # fmt: skip

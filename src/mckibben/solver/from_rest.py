@@ -15,7 +15,7 @@ from mckibben.model.parameters import Number, Parameters
 from mckibben.solver.follow import follow
 from mckibben.solver.held import ROWS, Now, read_rows, rows_of, units
 from mckibben.solver.problem import Basis
-from mckibben.solver.system import State, system
+from mckibben.solver.system import Unknowns, system
 from mckibben.spec.loading import Step
 
 __all__ = ["Wanted", "approach", "rest", "wanted"]
@@ -39,7 +39,7 @@ def rest(on: Placed) -> Now:
     return read_rows(on.unit, jnp.stack([one, one]), jnp.stack([0.0 * one, 0.0 * one]))
 
 
-def reading(basis: Basis, on: Placed, state: State) -> Now:
+def reading(basis: Basis, on: Placed, state: Unknowns) -> Now:
     """What a state reads, in SI units."""
     return read_rows(on.unit, system(basis, on, state).values, state.loads)
 
@@ -64,10 +64,10 @@ def wanted(step: Step, present: Now, on: Placed) -> Wanted:
     return Wanted(tuple(names), jnp.stack(columns, axis=1))
 
 
-def approach(basis: Basis, p: Parameters, b: Number, steps: tuple[Step, ...]) -> tuple[State, ...]:
+def approach(basis: Basis, p: Parameters, b: Number, steps: tuple[Step, ...]) -> tuple[Unknowns, ...]:
     """States of each step, with a leading dimension; from the first that is not reached on NaN."""
     on = place(basis, p, b)
-    state, have = State(jnp.zeros(basis.unknowns), jnp.zeros(2)), rest(on)
+    state, have = Unknowns(jnp.zeros(basis.unknowns), jnp.zeros(2)), rest(on)
     walk = _Walk(basis, p, b, on)
     found = []
     for index, step in enumerate(steps):
@@ -89,7 +89,7 @@ class _Walk(NamedTuple):
     b: Number
     on: Placed
 
-    def pressure_first(self, state: State, have: Now, asked: Wanted) -> tuple[State, Now]:
+    def pressure_first(self, state: Unknowns, have: Now, asked: Wanted) -> tuple[Unknowns, Now]:
         """Pressure before length or force: it stretches the braid, which would fold if it were compressed without."""
         names, targets, size = asked.names, asked.targets, units(self.on.unit)
         axial = "length" if "length" in names else "force"
@@ -101,7 +101,7 @@ class _Walk(NamedTuple):
         states, last = self.along((axial, "pressure"), state, way)
         return jax.tree.map(lambda row: row[-1], states), last
 
-    def along(self, names: tuple[str, ...], state: State, way: Array) -> tuple[State, Now]:
+    def along(self, names: tuple[str, ...], state: Unknowns, way: Array) -> tuple[Unknowns, Now]:
         """States along a way that begins where `state` is, NaN beyond the part reached; what the last one reads."""
         own, which = rows_of(names, 2)
         n = way.shape[0]

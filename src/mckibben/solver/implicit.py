@@ -21,13 +21,13 @@ from mckibben.model.parameters import Number, Parameters
 from mckibben.solver.held import conditions
 from mckibben.solver.newton import bordered
 from mckibben.solver.problem import Basis
-from mckibben.solver.system import State, system
+from mckibben.solver.system import Unknowns, system
 
-__all__ = ["imbalance", "settle"]
+__all__ = ["misses", "settle"]
 
 
-def imbalance(
-    static: tuple[Basis, Any], p: Parameters, b: Number, state: State, which: Any, targets: Array
+def misses(
+    static: tuple[Basis, Any], p: Parameters, b: Number, state: Unknowns, which: Any, targets: Array
 ) -> Float[Array, " w"]:
     """R: the gradient of the Lagrangian by the shape, and the misses of the rows; dimensionless."""
     basis, own = static
@@ -38,8 +38,8 @@ def imbalance(
 
 @partial(jax.custom_jvp, nondiff_argnums=(0,))
 def settle(
-    static: tuple[Basis, Any], state: State, p: Parameters, b: Number, which: Any, targets: Float[Array, " l"]
-) -> State:
+    static: tuple[Basis, Any], state: Unknowns, p: Parameters, b: Number, which: Any, targets: Float[Array, " l"]
+) -> Unknowns:
     """A state, which must be one, as a function of p and targets, differentiable to any order; NaN stays NaN."""
     return state
 
@@ -57,7 +57,7 @@ def _settle_jvp(static: tuple[Basis, Any], primals: Any, tangents: Any) -> tuple
     s = system(basis, on, safe)
     matrix = bordered(s, conditions(own, which, targets, on.unit, s.values, safe.loads))
     matrix = jnp.where(good, matrix, jnp.eye(len(matrix)))
-    change = jax.jvp(lambda p, targets: imbalance(static, p, b, safe, which, targets), (p, targets), (dp, dtargets))[1]
+    change = jax.jvp(lambda p, targets: misses(static, p, b, safe, which, targets), (p, targets), (dp, dtargets))[1]
     step = -jnp.linalg.solve(matrix, change)
     m = len(state.u)
-    return state, State(step[:m], step[m:])
+    return state, Unknowns(step[:m], step[m:])

@@ -9,7 +9,7 @@ from jaxtyping import Bool, Float
 
 from mckibben.compiled.arrays import Array
 from mckibben.solver.held import Conditions
-from mckibben.solver.system import State, System
+from mckibben.solver.system import System, Unknowns
 
 __all__ = [
     "HEAVY",
@@ -19,7 +19,7 @@ __all__ = [
     "batch_size",
     "bordered",
     "correct",
-    "holding",
+    "grip",
     "positive",
     "small_solve",
 ]
@@ -49,8 +49,8 @@ def batch_size(unknowns: int) -> int:
 class Correction(NamedTuple):
     """A Newton step, the change of the state by each target, and whether the state is a minimum."""
 
-    step: State
-    tangents: State  #: (m, l) and (l, l): one column for each target
+    step: Unknowns
+    tangents: Unknowns  #: (m, l) and (l, l): one column for each target
     stable: Bool[Array, ""]
 
 
@@ -61,7 +61,7 @@ def product(a: Float[Array, "r k"], b: Float[Array, "k c"]) -> Float[Array, "r c
     return jnp.sum(a[:, :, None] * b[None, :, :], axis=1)
 
 
-def holding(s: System, c: Conditions) -> tuple[Float[Array, "r m"], Float[Array, " r"]]:
+def grip(s: System, c: Conditions) -> tuple[Float[Array, "r m"], Float[Array, " r"]]:
     """Gradients of the rows through the totals, and how stiffly each of them holds.
 
     A row that holds a total holds it as stiffly as can be told, one that gives a load not at all; in between, as with
@@ -77,7 +77,7 @@ def correct(s: System, c: Conditions) -> Correction:
 
     K plus the rows' squares, weighted by how they hold, is positive definite where the state is stable under them.
     """
-    A, weight = holding(s, c)
+    A, weight = grip(s, c)
     factor = jnp.linalg.cholesky(s.stiffness + product(A.T * weight, A))
     stable = jnp.isfinite(factor).all()
     solved = jax.scipy.linalg.cho_solve((factor, True), jnp.concatenate([s.rest[:, None], s.gradients.T], axis=1))
@@ -88,7 +88,7 @@ def correct(s: System, c: Conditions) -> Correction:
     lead = jnp.concatenate([y[:, None], jnp.zeros((len(y), len(c.miss)))], axis=1) + product(Z, sides)
     dl = small_solve(product(A, on_loads) + c.by_loads, product(A, lead) - sides)
     du = product(on_loads, dl) - lead
-    return Correction(State(du[:, 0], dl[:, 0]), State(du[:, 1:], dl[:, 1:]), stable)
+    return Correction(Unknowns(du[:, 0], dl[:, 0]), Unknowns(du[:, 1:], dl[:, 1:]), stable)
 
 
 def bordered(s: System, c: Conditions) -> Float[Array, "w w"]:

@@ -14,7 +14,7 @@ from mckibben.solver.follow import follow_to
 from mckibben.solver.held import Held
 from mckibben.solver.problem import Problem
 
-__all__ = ["INTERRUPTED", "LOOSE", "Rows", "Trace", "Watch", "trace"]
+__all__ = ["INTERRUPTED", "LOOSE", "Arriving", "Trace", "Watch", "trace"]
 
 INTERRUPTED = "interrupted"
 """Message of a path that was ended by Ctrl-C."""
@@ -50,7 +50,7 @@ class Trace:
 
 
 @attrs.define
-class Rows:
+class Arriving:
     """States as they come in; an unexpected end loses none of them."""
 
     problem: Problem
@@ -60,7 +60,7 @@ class Rows:
     reached: int = 0
 
     @classmethod
-    def of(cls, problem: Problem, n: int) -> "Rows":
+    def of(cls, problem: Problem, n: int) -> "Arriving":
         """Room for n states."""
         room = np.full((n, problem.basis.unknowns), np.nan), np.full((n, problem.loads), np.nan)
         return cls(problem, *room, np.zeros(n, int))
@@ -71,7 +71,7 @@ class Rows:
         self.u[k], self.loads[k], self.iterations[k] = u, loads, iterations
         self.reached = k + 1
 
-    def traced(self, advance: Callable[["Rows"], str]) -> Trace:
+    def traced(self, advance: Callable[["Arriving"], str]) -> Trace:
         """What `advance` fills in, as far as it goes; it says why it ended. Ctrl-C ends it too."""
         try:
             message = advance(self)
@@ -90,7 +90,7 @@ def trace(
     """States for every entry of `path` (all holding the same two things), from `start` or sought directly."""
     n = len(path)
 
-    def advance(rows: Rows) -> str:
+    def advance(rows: Arriving) -> str:
         here = _first(problem, path[0], start)
         while here.converged:
             rows.add(here.u, here.loads, here.iterations)
@@ -106,7 +106,7 @@ def trace(
             here = _search(problem, path[k - 1], path[k], last)
         return here.message
 
-    return Rows.of(problem, n).traced(advance)
+    return Arriving.of(problem, n).traced(advance)
 
 
 def _first(problem: Problem, held: Held, start: Equilibrium | None) -> Equilibrium:

@@ -16,7 +16,7 @@ from mckibben.discretise.spectral import Line
 from mckibben.model.angle import radians
 from mckibben.model.energy import QUANTITIES
 from mckibben.model.parameters import Number, Parameters
-from mckibben.solver.system import State, assemble, localise
+from mckibben.solver.system import Unknowns, assemble, localise
 
 __all__ = ["CLOSURE", "LENGTH", "VOLUME", "Assembly", "Basis", "Problem", "evaluate", "setting", "slopes"]
 
@@ -40,7 +40,7 @@ def evaluate(basis: Basis, p: Parameters, b: Number, u: Float[Array, " m"]) -> A
     on = place(basis, p, b)
 
     def one(share: Array, loads: Array) -> tuple[Array, Array, Array]:
-        local = localise(basis, on, State(u, loads), share)
+        local = localise(basis, on, Unknowns(u, loads), share)
         s = assemble(basis, on, local, 3)
         return local.value.sum(), s.rest, s.stiffness
 

@@ -17,9 +17,9 @@ from mckibben.discretise.fields import Placed, place
 from mckibben.model.parameters import Number, Parameters
 from mckibben.results.verdict import Modes
 from mckibben.solver.held import GASES, conditions, rows_of
-from mckibben.solver.newton import holding
+from mckibben.solver.newton import grip
 from mckibben.solver.problem import Basis, Problem
-from mckibben.solver.system import Local, State, System, assemble, closing, localise, stiffness
+from mckibben.solver.system import Local, System, Unknowns, assemble, closing, localise, stiffness
 
 __all__ = ["Tangents", "binding", "count_modes", "negative", "null_space", "stiffnesses", "tangents", "weakest"]
 
@@ -44,17 +44,17 @@ def stiffnesses(basis: Basis, on: Placed, local: Local, s: System, together: boo
 
 @kernel
 def tangents(
-    static: tuple[Basis, Any], p: Parameters, b: Number, states: State, which: Any, targets: Float[Array, " l"]
+    static: tuple[Basis, Any], p: Parameters, b: Number, states: Unknowns, which: Any, targets: Float[Array, " l"]
 ) -> Tangents:
     """Tangents of n states, with the stiffness of what answers a change of volume: that of the gas, if it is sealed."""
     basis, own = static
     on = place(basis, p, b)
 
-    def one(state: State) -> Tangents:
+    def one(state: Unknowns) -> Tangents:
         local = localise(basis, on, state)
         s = assemble(basis, on, local, len(state.loads))
         found = stiffnesses(basis, on, local, s)
-        A, weight = holding(s, conditions(own, which, targets, on.unit, s.values, state.loads))
+        A, weight = grip(s, conditions(own, which, targets, on.unit, s.values, state.loads))
         return found._replace(stiffness=s.stiffness + (A[1:2].T * weight[1:2]) @ A[1:2])
 
     return jax.vmap(one)(states)
@@ -64,7 +64,7 @@ def of_states(problem: Problem, u: np.ndarray, loads: np.ndarray, names: tuple[A
     """Tangents of states u (n, m) under loads (n, l) on a problem; only the gas among `names` counts."""
     gas = next((name for name in names if name in GASES), "pressure")
     own, which = rows_of(("length", gas), problem.loads)
-    states = State(u, loads)
+    states = Unknowns(u, loads)
     targets = np.zeros(problem.loads)
     return Tangents(*map(np.asarray, tangents((problem.basis, own), problem.p, problem.b, states, which, targets)))
 

@@ -18,19 +18,30 @@ from mckibben.compiled.arrays import Array
 from mckibben.discretise.fields import Placed, Variables, known, variables
 from mckibben.discretise.products import pairs, sandwich, swept
 from mckibben.model.angle import Known
-from mckibben.model.energy import stored, works
+from mckibben.model.energy import remember, stored, works
 from mckibben.model.parameters import Number
 from mckibben.solver.trust_region import FLOOR
 
-__all__ = ["Local", "State", "System", "assemble", "closing", "localise", "residual", "stiffness", "system"]
+__all__ = [
+    "Local",
+    "System",
+    "Unknowns",
+    "assemble",
+    "closing",
+    "localise",
+    "remembered",
+    "residual",
+    "stiffness",
+    "system",
+]
 
 
-class State(NamedTuple):
+class Unknowns(NamedTuple):
     """Unknowns of equilibrium, all dimensionless: those of the shape, and the loads that are not known beforehand."""
 
     u: Float[Array, " m"]
     loads: Float[Array, " l"]  #: force, pressure and, where equal end radii are a condition, closing moment
-    memory: Any = None  #: what the points keep of the state before; nothing here has one yet
+    memory: Any = None  #: what the quadrature points keep of the state before, a leading dimension for the points
 
 
 class Local(NamedTuple):
@@ -54,7 +65,7 @@ class System(NamedTuple):
     values: Float[Array, " l"]
 
 
-def localise(basis: Any, on: Placed, state: State, share: Number = 1.0) -> Local:
+def localise(basis: Any, on: Placed, state: Unknowns, share: Number = 1.0) -> Local:
     """Derivatives at the points of a state. `share` is that of the stored energy in the Lagrangian."""
     form, p, unit = basis.form, on.p, on.unit
     x = variables(basis, on, state.u)
@@ -130,7 +141,7 @@ def assemble(basis: Any, on: Placed, local: Local, count: int, together: bool = 
     return System(stiffness(basis, on, local, together), rest, jnp.stack(gradients), values)
 
 
-def system(basis: Any, on: Placed, state: State, together: bool = False) -> System:
+def system(basis: Any, on: Placed, state: Unknowns, together: bool = False) -> System:
     """The equations at a state; `together` arranges them for many muscles in step."""
     return assemble(basis, on, localise(basis, on, state), len(state.loads), together)
 
@@ -180,6 +191,14 @@ def closing(basis: Any, on: Placed, local: Local) -> Float[Array, " a"]:
     even = basis.even()
     change = 0.5 * _gradient(even, on, local, tuple(f[2] for f in local.works_first))
     return change + jnp.asarray(even.operators().lift[0])
+
+
+def remembered(basis: Any, on: Placed, state: Unknowns) -> Unknowns:
+    """A state that has been reached, with what its points keep of it for the next one."""
+    if state.memory is None:
+        return state
+    at = basis.form.point(variables(basis, on, state.u), on.p)
+    return state._replace(memory=jax.vmap(lambda at, kept: remember(at, on.p, kept))(at, state.memory))
 
 
 def residual(s: System, loads: Array) -> Array:

@@ -57,7 +57,7 @@ class Task:
 
 
 @attrs.frozen
-class Solved:
+class Minimum:
     """Where the search ended."""
 
     u: Floats
@@ -69,13 +69,13 @@ class Solved:
     totals: Floats  #: at u
 
 
-def minimise(task: Task, u: Floats, radius: float = 1.0, limit: int = 200, tolerance: float = 1e-10) -> Solved:
+def minimise(task: Task, u: Floats, radius: float = 1.0, limit: int = 200, tolerance: float = 1e-10) -> Minimum:
     """Search from u; converged means a residual below `tolerance` and constraints met to the same."""
     root = np.linalg.cholesky(task.metric).T
     inverse = np.linalg.inv(root)
     start = _Point.at(task, u, inverse, task.loads)
     if start is None:
-        return Solved(u, task.loads, False, np.inf, 1, UNDEFINED, task.evaluate(u).totals)
+        return Minimum(u, task.loads, False, np.inf, 1, UNDEFINED, task.evaluate(u).totals)
     point, penalty = start, 0.0
     for count in range(1, limit + 1):
         if point.residual < 1e-6 or radius < 1e-9:
@@ -109,7 +109,7 @@ def minimise(task: Task, u: Floats, radius: float = 1.0, limit: int = 200, toler
             continue
         point = trial
         if task.largest_change(point.u - u) > task.leash:
-            return Solved(point.u, point.loads, False, point.residual, count, "nothing near the start", point.totals)
+            return Minimum(point.u, point.loads, False, point.residual, count, "nothing near the start", point.totals)
         if actual > 0.75 * predicted and length > 0.8 * radius:
             radius = min(2.5 * radius, 10.0)
         elif actual < 0.25 * predicted:
@@ -217,10 +217,10 @@ def trust_region_step(hessian: Floats, gradient: Floats, radius: float) -> Float
     return np.asarray(-vectors @ (g / (values + shift)))
 
 
-def polish(task: Task, u: Floats, loads: Floats, tolerance: float, count: int, limit: int = 12) -> Solved:
+def polish(task: Task, u: Floats, loads: Floats, tolerance: float, count: int, limit: int = 12) -> Minimum:
     """Newton on the KKT system until the residual stops falling."""
     held, loads = list(task.held), loads.copy()
-    best: Solved | None = None
+    best: Minimum | None = None
     for k in range(limit):
         d = task.evaluate(u)
         if not task.admissible(d.theta):
@@ -230,7 +230,7 @@ def polish(task: Task, u: Floats, loads: Floats, tolerance: float, count: int, l
         rest, c = signs @ gradients, totals[held] - task.targets
         residual = max(imbalance(signs, gradients), float(np.abs(c).max(initial=0.0)))
         if best is None or residual < best.residual:
-            best = Solved(u, loads.copy(), residual < tolerance, residual, count + k, "converged", totals)
+            best = Minimum(u, loads.copy(), residual < tolerance, residual, count + k, "converged", totals)
             if residual < ROUNDING:
                 break
         elif best.converged or not np.isfinite(residual) or k > 6:
@@ -245,7 +245,7 @@ def polish(task: Task, u: Floats, loads: Floats, tolerance: float, count: int, l
         u = u + step[: len(u)]
         loads[held] += step[len(u) :]
     if best is None:
-        return Solved(u, loads, False, np.inf, count, UNDEFINED, task.evaluate(u).totals)
+        return Minimum(u, loads, False, np.inf, count, UNDEFINED, task.evaluate(u).totals)
     return best if best.converged else attrs.evolve(best, message="Newton did not converge")
 
 

@@ -4,6 +4,7 @@ The same discretisations and point placements as for a single run, so the same n
 followed cleanly, state by state, is left to `run`.
 """
 
+import math
 from collections.abc import Callable
 from concurrent.futures import ThreadPoolExecutor
 from functools import partial
@@ -18,20 +19,22 @@ from mckibben.discretise.fields import Placed, place
 from mckibben.discretise.placement import crowdings
 from mckibben.discretise.spectral import Line
 from mckibben.measure.many import Appraised, appraised, polished
-from mckibben.measure.survey import PLAIN_SLOPE, error_of
+from mckibben.measure.survey import PLAIN_SLOPE, error_bound
 from mckibben.model.parameters import Parameters
 from mckibben.solver.batch import march
 from mckibben.solver.bench import sizes_for
 from mckibben.solver.follow import padded
 from mckibben.solver.held import rows_of, units
 from mckibben.solver.newton import MOST, batch_size
-from mckibben.solver.system import State
+from mckibben.solver.system import Unknowns
 from mckibben.sweeps.groups import Group
 
-__all__ = ["Solved", "solve"]
+__all__ = ["Solved", "solve_together"]
 
 LARGEST = 48
 """Half-length unknowns up to which a batch goes; what needs more is solved singly."""
+BETWEEN = 16
+"""Parts of a step where a path is followed once more."""
 CLOSE = 2e-3
 """Last Newton step [rad] of every state over the square root of the tolerance: the error left is about its square."""
 
@@ -43,13 +46,13 @@ class Solved:
     group: Group
     line: Line
     b: np.ndarray  #: (d) crowding of points
-    state: State  #: (d, n, m) and (d, n, 2), dimensionless
+    state: Unknowns  #: (d, n, m) and (d, n, 2), dimensionless
     numbers: dict[str, np.ndarray]  #: (d, n), by the names of a sweep's variables
     plain: np.ndarray  #: (d, n) whether a state is stable in every way and of ordinary shape
     stable_loads: np.ndarray  #: (d, n) whether it is stable with the force held
 
 
-def solve(
+def solve_together(
     group: Group, tolerance: float, watch: Callable[[int], None] = lambda done: None, threads: int = 1
 ) -> list[Solved]:
     """The designs of a group that batches can do, on as many unknowns as the tolerance needs.
@@ -59,10 +62,10 @@ def solve(
     found: list[Solved] = []
     left = np.arange(len(group))
     with ThreadPoolExecutor(threads) as pool:
+        close = CLOSE * math.sqrt(tolerance)
         for size in (size for size in sizes_for("spectral", tolerance) if size <= LARGEST):
             line = Line(size, group.ends)
-            paths = _followed(pool, group.take(left), line)
-            paths = _closer(pool, paths, CLOSE * np.sqrt(tolerance))
+            paths = _finer(pool, _followed(pool, group.take(left), line, close), close)
             coarse = []
             for solved, where in _read(pool, paths):
                 good = solved.numbers["error_estimate"].max(axis=1, initial=0.0) <= tolerance
@@ -79,7 +82,7 @@ def _some(solved: Solved, which: np.ndarray) -> Solved:
     """Some of the designs."""
     where = np.flatnonzero(which)
     return Solved(
-        solved.group.take(where), solved.line, solved.b[where], State(*(part[where] for part in solved.state[:2])),
+        solved.group.take(where), solved.line, solved.b[where], Unknowns(*(part[where] for part in solved.state[:2])),
         {name: values[where] for name, values in solved.numbers.items()}, solved.plain[where],
         solved.stable_loads[where],
     )  # fmt: skip
@@ -121,7 +124,7 @@ class _Paths:
     line: Line
     turned: np.ndarray  #: (d) whether the path is followed from its last state to its first
     targets: np.ndarray  #: (d, N, 2) dimensionless
-    state: State  #: (d, N, m) and (d, N, 2)
+    state: Unknowns  #: (d, N, m) and (d, N, 2)
     change: np.ndarray  #: (d, N) largest change of psi [rad] in the last Newton step
     good: np.ndarray  #: (d) whether every state was reached
 
@@ -155,15 +158,15 @@ def _on(group: Group, b: np.ndarray, line: Line) -> Placed:
     return placed
 
 
-def _followed(pool: ThreadPoolExecutor, group: Group, line: Line) -> _Paths:
-    """The designs along their paths, from rest."""
+def _followed(pool: ThreadPoolExecutor, group: Group, line: Line, close: float) -> _Paths:
+    """The designs along their paths, from rest, each state to a last Newton step that is `close`."""
     (count, n), m, size = group.wanted.shape[:2], line.unknowns, batch_size(line.unknowns)
     # pressure stretches the fibres: the path is followed from its end of higher pressure
     turned = np.abs(group.wanted[:, -1, 1]) > np.abs(group.wanted[:, 0, 1])
     wanted = np.where(turned[:, None, None], group.wanted[:, ::-1], group.wanted)
     targets = np.moveaxis(padded(np.moveaxis(wanted, 1, 0)), 0, 1)  # few lengths are compiled
     rows = targets.shape[1]
-    blank = State(np.zeros((count, rows, m)), np.zeros((count, rows, 2)))
+    blank = Unknowns(np.zeros((count, rows, m)), np.zeros((count, rows, 2)))
     paths = _Paths(group, np.zeros(count), line, turned, targets, blank, np.zeros((count, rows)), np.zeros(count, bool))
     rest = np.tile([1.0 if group.held[0] == "length" else 0.0, 0.0], (size, 1))
 
@@ -179,10 +182,32 @@ def _followed(pool: ThreadPoolExecutor, group: Group, line: Line) -> _Paths:
         paths.good[some] = (np.asarray(path.reached) & np.asarray(path.rows.good)[:, :n].all(axis=1))[: len(some)]
 
     list(pool.map(one, paths.parts(np.arange(count))))
+    return _closer(pool, paths, close)
+
+
+def _finer(pool: ThreadPoolExecutor, paths: _Paths, close: float) -> _Paths:
+    """Those that were not followed, once more with states in between, which are then left out."""
+    lost = np.flatnonzero(~paths.good)
+    n = paths.states
+    if not len(lost) or n == 1:
+        return paths
+    wanted, share = paths.group.wanted[lost], np.arange(BETWEEN) / BETWEEN
+    begin, end = wanted[:, :-1, None], wanted[:, 1:, None]
+    steps = (begin + (end - begin) * share[:, None]).reshape(len(lost), -1, 2)
+    dense = attrs.evolve(paths.group.take(lost), wanted=np.concatenate([steps, wanted[:, -1:]], axis=1))
+    again = _followed(pool, dense, paths.line, close)
+    rows = slice(0, BETWEEN * (n - 1) + 1, BETWEEN)
+    for mine, other in (
+        (paths.state.u, again.state.u),
+        (paths.state.loads, again.state.loads),
+        (paths.change, again.change),
+    ):
+        mine[lost, :n] = other[:, rows]
+    paths.b[lost], paths.good[lost] = again.b, again.good
     return paths
 
 
-def _put(state: State, some: np.ndarray, rows: State) -> None:
+def _put(state: Unknowns, some: np.ndarray, rows: Unknowns) -> None:
     """States of a batch (batch, N, ...) into those of all designs."""
     state.u[some], state.loads[some] = (np.asarray(part)[: len(some)] for part in rows[:2])
 
@@ -233,8 +258,8 @@ def _arranged(paths: _Paths, found: Appraised, some: np.ndarray, good: np.ndarra
         return in_order(np.moveaxis(np.asarray(rows)[:n], 0, 1)[good])
 
     seen = {name: by_design(values) for name, values in found.numbers.items()}
-    seen["error_estimate"] = error_of(seen["conserved_variation"], seen["coefficient_tail"])
+    seen["error_estimate"] = error_bound(seen["conserved_variation"], seen["coefficient_tail"])
     loads, slope, sideways = (by_design(rows) for rows in (found.force, found.largest_slope, found.antisymmetric))
     plain = sideways & (slope < PLAIN_SLOPE) & (loads | (paths.group.held[0] == "length"))
-    state = State(in_order(paths.state.u[where, :n]), in_order(paths.state.loads[where, :n]))
+    state = Unknowns(in_order(paths.state.u[where, :n]), in_order(paths.state.loads[where, :n]))
     return Solved(paths.group.take(where), paths.line, paths.b[where], state, seen, plain, loads)

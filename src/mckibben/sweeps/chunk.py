@@ -14,16 +14,15 @@ from mckibben.measure.survey import survey
 from mckibben.solver.path import INTERRUPTED
 from mckibben.solver.problem import Problem
 from mckibben.spec import SpecError
-from mckibben.sweeps.batches import Solved
-from mckibben.sweeps.batches import solve as solve_together
+from mckibben.sweeps.batches import Solved, solve_together
 from mckibben.sweeps.groups import groups
 from mckibben.sweeps.outcome import Columns, Kinds, Status, empty, keep, keep_plain, keep_states, refuse
 from mckibben.sweeps.plan import Design, Piece
 
-__all__ = ["solve"]
+__all__ = ["solve_piece"]
 
 
-def solve(piece: Piece, watch: Callable[[int], None] | None = None) -> Columns:
+def solve_piece(piece: Piece, watch: Callable[[int], None] | None = None) -> Columns:
     """What is kept of each design of `piece`; `watch` is told how many are done.
 
     All designs that allow it advance together; those that are not followed cleanly are solved one at a time. A design

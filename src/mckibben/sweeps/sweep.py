@@ -12,7 +12,7 @@ import xarray as xr
 
 from mckibben.solver.bench import sizes_for
 from mckibben.spec import Muscle, SpecError, Test
-from mckibben.sweeps.chunk import solve
+from mckibben.sweeps.chunk import solve_piece
 from mckibben.sweeps.dataset import Memory
 from mckibben.sweeps.outcome import Columns
 from mckibben.sweeps.plan import Plan, plan
@@ -108,7 +108,7 @@ def _finish(
     alone = len(missing) == 1 or jax.default_backend() != "cpu"  # one process feeds a GPU; more would fight for it
     if scheduler is None and (workers == 0 or (workers is None and alone)):
         for index in missing:
-            keep(index, solve(wanted.piece(index), partial(_within, watch, done, total)))
+            keep(index, solve_piece(wanted.piece(index), partial(_within, watch, done, total)))
     else:
         spread(wanted, missing, keep, workers, scheduler)
 

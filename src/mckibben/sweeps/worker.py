@@ -47,6 +47,6 @@ def work(base: bytes, rest: tuple[Any, ...], environment: Mapping[str, str], mad
     if other:
         here = ", ".join(f"{name} {number} (not {made_by[name]})" for name, number in other.items())
         raise SweepError(f"a worker has {here}: install the same versions everywhere")
-    from mckibben.sweeps.chunk import solve
+    from mckibben.sweeps.chunk import solve_piece
 
-    return solve(Piece(*_base(base), *rest))
+    return solve_piece(Piece(*_base(base), *rest))
