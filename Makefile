@@ -42,7 +42,7 @@ demo: setup
 	$(BIN)/mckibben reproduce -o out/demo --force
 
 test: setup
-	$(BIN)/python -m pytest -n 2
+	$(BIN)/python -m pytest -n 2 --dist loadfile
 
 lint: setup
 	$(BIN)/ruff check .

@@ -269,12 +269,12 @@ def test_a_users_law_is_not_kept(sought: tuple[Path, Held, Bench]) -> None:
 
 def test_a_compiler_with_other_options(monkeypatch: pytest.MonkeyPatch) -> None:
     """It is asked for those that it has; none of the processor's on another device."""
-    known = options.known(OPTIONS | {"xla_no_such_option": 1})
-    assert known == OPTIONS
+    taken = options.understood(OPTIONS | {"xla_no_such_option": 1})
+    assert taken == OPTIONS
     monkeypatch.setattr(jax, "default_backend", lambda: "gpu")
-    options._known.cache_clear()
-    assert options.known(OPTIONS) == {}
-    options._known.cache_clear()
+    options._understood.cache_clear()
+    assert options.understood(OPTIONS) == {}
+    options._understood.cache_clear()
 
 
 @pytest.mark.parametrize("text", ["", "quick"])

@@ -8,6 +8,7 @@ import numpy as np
 from mckibben.measure.judge import Judgement, judge, shape_of
 from mckibben.measure.meridian import meridian
 from mckibben.measure.read import NODES, Reading, Stable, read_many
+from mckibben.model.extension import full_extension
 from mckibben.model.parameters import Parameters
 from mckibben.results.verdict import Modes, Shape
 from mckibben.solver.follow import padded
@@ -20,6 +21,8 @@ __all__ = ["PLAIN_SLOPE", "Survey", "error_bound", "errors", "padded_states", "p
 
 ROUNDING = 1e-11
 """Relative error that rounding leaves in a force or length at best."""
+STRETCHED = 0.998
+"""Share of full extension beyond which the variation of the conserved quantity says too little of the force."""
 PLAIN_SLOPE = 1.5
 """Slope [rad] of the meridian below which no shape is anything but ordinary."""
 ODD = ("psi", "u1")
@@ -113,8 +116,10 @@ def survey(problem: Problem, u: np.ndarray, loads: np.ndarray, held: tuple[Any, 
         shapes[k] = shape_of(*line)
     verdicts = [judge(mode, shape, "length" in held) for mode, shape in zip(modes, shapes, strict=True)]
     variation, tail = reading.conserved_variation, reading.coefficient_tail
+    near = stretched(problem, reading.numbers["length"])
     numbers = reading.numbers | {
-        "error_estimate": error_bound(variation, tail), "conserved_variation": variation, "coefficient_tail": tail,
+        "error_estimate": error_bound(variation, tail, near), "conserved_variation": variation,
+        "coefficient_tail": tail,
     }  # fmt: skip
     return Survey(problem, u, loads, numbers, reading.fields, residual, modes, verdicts)
 
@@ -122,13 +127,26 @@ def survey(problem: Problem, u: np.ndarray, loads: np.ndarray, held: tuple[Any, 
 def errors(problem: Problem, u: np.ndarray, loads: np.ndarray) -> np.ndarray:
     """Estimated relative error of force and length of states u (n, m) under loads (n, l)."""
     reading = read_states(problem, u, loads, False)[0]
-    return error_bound(reading.conserved_variation, reading.coefficient_tail)
+    near = stretched(problem, reading.numbers["length"])
+    return error_bound(reading.conserved_variation, reading.coefficient_tail, near)
 
 
-def error_bound(conserved_variation: np.ndarray, coefficient_tail: np.ndarray) -> np.ndarray:
-    """The smaller of two bounds that hold on random muscles.
+def error_bound(
+    conserved_variation: np.ndarray, coefficient_tail: np.ndarray, stretched: np.ndarray | bool = False
+) -> np.ndarray:
+    """The smaller of two bounds that hold on random muscles; of those `stretched` nearly to full extension only one.
 
     In validation/ the variation of the conserved quantity fell short of the true error by 2.5 at most. The tail of the
-    coefficients enters the energy squared; near an instability the force follows less well, hence the power 1.5.
+    coefficients enters the energy squared; near an instability the force follows less well, hence the power 1.5. Near
+    full extension the force answers to the last digits of the length, of which the conserved quantity knows nothing:
+    there the tail counts, which fell short by 1.8 at most.
     """
-    return np.maximum(np.minimum(3.0 * conserved_variation, coefficient_tail**1.5), ROUNDING)
+    by_tail = coefficient_tail**1.5
+    usual = np.minimum(3.0 * conserved_variation, by_tail)
+    return np.maximum(np.where(stretched, 2.0 * by_tail, usual), ROUNDING)
+
+
+def stretched(problem: Problem, length: np.ndarray) -> np.ndarray:
+    """Which lengths [m] are so near full extension that an error estimate must know it."""
+    p = problem.p
+    return length > STRETCHED * full_extension(float(p.R0), float(p.H0), float(p.theta0), problem.basis.ends)

@@ -2,6 +2,7 @@
 
 import math
 from collections.abc import Callable
+from functools import lru_cache
 
 from mckibben import spec
 from mckibben.model.elliptic import elliprd, elliprf
@@ -11,6 +12,7 @@ LONG = 25.0
 """From this T on, the long muscle's limit is exact: what it leaves out is of order T exp(-2 T)."""
 
 
+@lru_cache(maxsize=256)
 def full_extension(R0: Number, H0: Number, theta0: Number, ends: str) -> float:
     """Longest admissible length [m] of a muscle of radius R0 [m], length H0 [m] and angle theta0 [rad from parallels].
 
