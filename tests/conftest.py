@@ -16,9 +16,6 @@ os.environ["MPLBACKEND"] = "Agg"
 os.environ.setdefault("MCKIBBEN_CACHE", str(CACHE))
 os.environ.setdefault("MCKIBBEN_COMPILE", "quick")
 
-from collections.abc import Iterator
-
-import pytest
 from beartype import BeartypeConf, beartype
 from hypothesis import HealthCheck, settings
 from jaxtyping import install_import_hook
@@ -33,13 +30,3 @@ settings.register_profile(
     "mckibben", derandomize=True, deadline=None, database=None, suppress_health_check=[HealthCheck.too_slow]
 )
 settings.load_profile("mckibben")
-
-
-@pytest.fixture
-def thorough() -> Iterator[None]:
-    """Kernels compiled as for users: in long searches they run ten times as fast as those of the other tests."""
-    from mckibben.compiled.kernel import keeping
-    from mckibben.compiled.options import OPTIONS
-
-    with keeping(Path(os.environ["MCKIBBEN_CACHE"]), OPTIONS):
-        yield

@@ -8,7 +8,7 @@ import pytest
 
 import mckibben as mk
 
-pytestmark = [pytest.mark.solver, pytest.mark.usefixtures("thorough")]
+pytestmark = pytest.mark.solver
 
 FILE = Path(__file__).parent / "data" / "random_targets.json"
 TARGETS = json.loads(FILE.read_text(encoding="utf-8"))["targets"]

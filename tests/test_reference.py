@@ -35,7 +35,6 @@ def test_default_tolerance_is_met_and_the_estimate_bounds_the_error(case):
     assert error <= max(state.error_estimate, 1e-9)
 
 
-@pytest.mark.usefixtures("thorough")
 @pytest.mark.parametrize("case", CASES["hard"], ids=lambda case: case["id"])
 def test_hard_targets_get_their_verdict(case):
     m, pressure = muscle(case), case["pressure_MPa"] * 1e6
