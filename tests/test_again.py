@@ -49,3 +49,16 @@ def test_a_sweep_agrees(alone: list[mk.State]) -> None:
     table = mk.sweep(SHORT, test, {"braid.fibres": [18]}, workers=0)
     words = table["verdict"].attrs["flag_meanings"].split()
     assert [words[int(k) + 1] for k in table["verdict"].values.ravel()] == [str(state.verdict) for state in alone]
+
+
+def test_an_interruption_keeps_what_was_found(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Ctrl-C while a state is sought on its own: the result says so, and the states that following reached stay."""
+    from mckibben.experiments import again
+
+    def stop(*_: object, **__: object) -> None:
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr(again, "answer", stop)
+    curve = mk.run(SHORT, mk.Isotonic(force=FORCE, pressure=PRESSURES[::-1]))
+    assert curve.status == "interrupted"
+    assert curve.verdict[:2] == ("stable", "stable")

@@ -1,8 +1,7 @@
 """The states of a step that following did not reach, or that are not stable there: each is sought on its own.
 
-From good neighbours both ways along the path, straight, along the way there, and at the ends of every stretch without
-states from other starts too; so that a curve says of a state what a single call says. A state that another brings along
-is followed from it, and what was learnt on the way to one target is not sought again for one beyond it.
+From good neighbours both ways along the path, straight, along the way there, and at the two ends of every stretch of
+such states from other starts too, so that a curve says of a state what a single call says.
 """
 
 from collections.abc import Callable, Iterator
@@ -19,7 +18,7 @@ from mckibben.search.walk import Look, look
 from mckibben.solver.bench import Bench
 from mckibben.solver.find import equilibrium
 from mckibben.solver.follow import follow_to
-from mckibben.solver.path import LOOSE, Watch
+from mckibben.solver.path import INTERRUPTED, LOOSE, Watch
 
 __all__ = ["sought_again"]
 
@@ -34,17 +33,17 @@ def sought_again(bench: Bench, part: Part, b: float, tolerance: float, watch: Wa
     left = [k for k, verdict in enumerate(verdicts) if verdict != Verdict.STABLE]
     if not left:
         return part
-    search = _Search(bench, part, b, tolerance, {})
+    search, why = _Search(bench, part, b, tolerance, {}), part.why
     try:
         for stretch in _stretches(left):
             _fill(search, stretch, lambda done: watch(len(part.path) - len(left) + done, len(part.path)))
     except KeyboardInterrupt:  # what was found is worth keeping
-        pass
-    return attrs.evolve(part, sought=search.found)
+        why = INTERRUPTED
+    return attrs.evolve(part, sought=search.found, why=why)
 
 
 def _stretches(places: list[int]) -> Iterator[list[int]]:
-    """Places in a row that follow each other, the last stretch first: it may have a good state behind it."""
+    """Places that follow each other without a gap."""
     cuts = [k for k in range(1, len(places)) if places[k] != places[k - 1] + 1]
     for first, last in zip([0, *cuts], [*cuts, len(places)], strict=True):
         yield places[first:last]
@@ -66,6 +65,7 @@ class _Search:
         return look(equilibrium(view.problem, view.u[k], view.loads[k]), self.part.path[k])
 
     def keep(self, k: int, judgement: Judgement, given: Look | None) -> None:
+        """Note what was found at k."""
         if given is None:
             self.found[k] = Sought(judgement)
             return
@@ -73,16 +73,15 @@ class _Search:
         view = survey(state.problem, state.u[None], state.loads[None], self.part.path[k].names)
         self.found[k] = Sought(judgement, view, state.iterations)
 
-    def along(self, here: Look, k: int, way: list[int]) -> int:
-        """Follow from a good state at k through the places of `way`; how many of them are good."""
+    def along(self, here: Look, k: int, way: list[int]) -> None:
+        """Follow from a good state at k through the places of `way`, as far as they are good."""
         path = [self.part.path[i] for i in (k, *way)]
         states = follow_to(here.state.problem, path, here.state, min(LOOSE, self.tolerance))[1:]
-        for count, (i, one) in enumerate(zip(way, states, strict=False)):
+        for i, one in zip(way, states, strict=False):
             seen = look(equilibrium(here.state.problem, one.u, one.loads, one.iterations), self.part.path[i])
             if not seen.good or estimated_error(seen.state) > self.tolerance:
-                return count
+                return
             self.keep(i, seen.verdict, seen)
-        return min(len(way), len(states))
 
 
 def _fill(search: _Search, stretch: list[int], tell: Callable[[int], None]) -> None:

@@ -63,7 +63,9 @@ def run(
     parts = solved(bench, steps, tolerance, discretisation, tell)
     if discretisation == "spectral":
         b = _crowding(bench, steps)
-        parts = [sought_again(bench, part, b, tolerance, tell) for part in parts]
+        for k, part in enumerate(parts):
+            if not any(one.why == INTERRUPTED for one in parts):
+                parts[k] = sought_again(bench, part, b, tolerance, tell)
     result, notes = report(muscle, test, parts, float(bench.p.H0), thick_wall(muscle))
     for note in notes:
         warnings.warn(note, MuscleWarning, stacklevel=2)

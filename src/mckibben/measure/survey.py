@@ -116,7 +116,7 @@ def survey(problem: Problem, u: np.ndarray, loads: np.ndarray, held: tuple[Any, 
         shapes[k] = shape_of(*line)
     verdicts = [judge(mode, shape, "length" in held) for mode, shape in zip(modes, shapes, strict=True)]
     variation, tail = reading.conserved_variation, reading.coefficient_tail
-    near = stretched(problem, reading.numbers["length"])
+    near = nearly_straight(problem, reading.numbers["length"])
     numbers = reading.numbers | {
         "error_estimate": error_bound(variation, tail, near), "conserved_variation": variation,
         "coefficient_tail": tail,
@@ -127,7 +127,7 @@ def survey(problem: Problem, u: np.ndarray, loads: np.ndarray, held: tuple[Any, 
 def errors(problem: Problem, u: np.ndarray, loads: np.ndarray) -> np.ndarray:
     """Estimated relative error of force and length of states u (n, m) under loads (n, l)."""
     reading = read_states(problem, u, loads, False)[0]
-    near = stretched(problem, reading.numbers["length"])
+    near = nearly_straight(problem, reading.numbers["length"])
     return error_bound(reading.conserved_variation, reading.coefficient_tail, near)
 
 
@@ -146,7 +146,7 @@ def error_bound(
     return np.maximum(np.where(stretched, 2.0 * by_tail, usual), ROUNDING)
 
 
-def stretched(problem: Problem, length: np.ndarray) -> np.ndarray:
-    """Which lengths [m] are so near full extension that an error estimate must know it."""
+def nearly_straight(problem: Problem, length: np.ndarray) -> np.ndarray:
+    """At which lengths [m] the fibres are so nearly straight that an error estimate must know it."""
     p = problem.p
     return length > STRETCHED * full_extension(float(p.R0), float(p.H0), float(p.theta0), problem.basis.ends)
