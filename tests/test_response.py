@@ -25,6 +25,7 @@ def force(numbers: Any) -> Any:
 
 
 AT = jnp.array([PAPER.braid.angle, PAPER.braid.radius, 1e5])
+gradient = jax.jit(jax.grad(force))
 
 
 def test_it_is_what_run_gives() -> None:
@@ -66,7 +67,7 @@ def test_compiled_and_searched_states_are_the_same(test: Any) -> None:
 
 def test_transformations_agree() -> None:
     exact = np.asarray(jax.grad(force)(AT))
-    np.testing.assert_allclose(jax.jit(jax.grad(force))(AT), exact, rtol=1e-8)
+    np.testing.assert_allclose(gradient(AT), exact, rtol=1e-8)
     np.testing.assert_allclose(jax.jit(jax.jacfwd(force))(AT), exact, rtol=1e-8)
     many = jax.jit(jax.vmap(force))(jnp.stack([AT, 1.01 * AT]))
     assert float(many[0]) == pytest.approx(float(force(AT)), rel=1e-9)
@@ -75,12 +76,11 @@ def test_transformations_agree() -> None:
 
 def test_second_derivatives() -> None:
     """Symmetric, and central differences of the first; by pressure and angle, whose results are far from linear."""
-    first = jax.jit(jax.grad(force))
     hessian = np.asarray(jax.jit(jax.hessian(force))(AT))
     unit = np.outer(AT, AT)
     np.testing.assert_allclose(hessian * unit, hessian.T * unit, rtol=1e-8, atol=1e-9)
     for k in range(3):
-        near = [np.asarray(first(AT * (1.0 + sign * 1e-4 * np.eye(3)[k]))) for sign in (-1, 1)]
+        near = [np.asarray(gradient(AT * (1.0 + sign * 1e-4 * np.eye(3)[k]))) for sign in (-1, 1)]
         slope = (near[1] - near[0]) / (2e-4 * AT[k])
         np.testing.assert_allclose(
             hessian[k] * AT, slope * AT, rtol=1e-5, atol=1e-7 * np.abs(hessian * unit).max() / AT[k]
@@ -104,14 +104,16 @@ def test_a_state_that_is_not_there_spoils_no_other(by_jit: bool) -> None:
         test = mk.Isobaric(pressure="1 bar", length=list(lengths))
         return mk.response(PAPER.replace("braid.angle", angle), test)["force"]
 
-    made = jax.jit if by_jit else (lambda f: f)
-    values, slopes = made(forces)(PAPER.braid.angle), made(jax.jacrev(forces))(PAPER.braid.angle)
+    def all_of_it(angle: Any) -> Any:
+        return forces(angle), jax.jacrev(forces)(angle), jax.jacfwd(forces)(angle)
+
+    values, slopes, forward = (jax.jit(all_of_it) if by_jit else all_of_it)(PAPER.braid.angle)
     assert np.isfinite(values[0])
     assert np.isnan(values[1])
     alone = jax.grad(lambda angle: forces(angle, (0.105, 0.106))[0])(PAPER.braid.angle)
     assert float(slopes[0]) == pytest.approx(float(alone), rel=1e-8)
     assert not np.isfinite(slopes[1])
-    assert not np.isfinite(made(jax.jacfwd(forces))(PAPER.braid.angle)[1])
+    assert not np.isfinite(forward[1])
 
 
 def test_tests_without_derivatives_are_refused() -> None:

@@ -18,7 +18,7 @@ from mckibben.results.variables import OBSERVED
 from mckibben.solver.bench import Bench
 from mckibben.solver.equilibrium import Equilibrium
 from mckibben.solver.find import find
-from mckibben.solver.held import Held, conditions, rows_of, units
+from mckibben.solver.held import ROWS, Held, conditions, rows_of, units
 from mckibben.solver.implicit import settle
 from mckibben.solver.newton import bordered
 from mckibben.solver.problem import Basis
@@ -52,14 +52,17 @@ def state_of(muscle: mk.Muscle, held: dict[str, float]) -> Equilibrium:
 
 
 def results(
-    basis: Basis, tree: Any, names: Any, anew: bool, at: jax.Array, share: jax.Array, b: Any, state: Unknowns
+    basis: Basis, tree: Any, anew: bool, which: jax.Array, at: jax.Array, share: jax.Array, b: Any, state: Unknowns
 ) -> Any:
-    """Results where numbers and held values are changed to a share of theirs, at w: solved anew, or by `settle`."""
+    """Results where numbers and held values are changed to a share of theirs, at w: solved anew, or by `settle`.
+
+    What is held is a number, so that all ways of holding share what is compiled.
+    """
     numbers = at * share
     p = parameters(jax.tree.unflatten(tree, list(numbers[:-2])))
     on = place(basis, p, b)
-    size, (own, which) = units(on.unit), rows_of(names, 2)
-    targets, m = numbers[-2:] / jnp.stack([size[name] for name in names]), basis.unknowns
+    size, own = units(on.unit), ()
+    targets, m = numbers[-2:] / jnp.stack([size[name] * jnp.ones(()) for name in ROWS])[which], basis.unknowns
 
     def newton(_: Any, state: Unknowns) -> Unknowns:
         s = system(basis, on, state)
@@ -67,18 +70,13 @@ def results(
         step = jnp.linalg.solve(bordered(s, c), jnp.concatenate([s.rest, c.miss]))
         return Unknowns(state.u - step[:m], state.loads - step[m:])
 
-    if anew:
-        state = jax.lax.fori_loop(0, 8, newton, state)
-    else:
-        state = settle((basis, own), state, p, b, jnp.asarray(which), targets)
+    state = jax.lax.fori_loop(0, 8, newton, state) if anew else settle((basis, own), state, p, b, which, targets)
     seen = read(basis, on, state).numbers
     return jnp.stack([seen[name] for name in OBSERVED])
 
 
-exact_by = jax.jit(jax.jacfwd(results, argnums=5), static_argnums=(0, 1, 2, 3))
-solved_at = jax.jit(
-    jax.vmap(results, in_axes=(None, None, None, None, None, 0, None, None)), static_argnums=(0, 1, 2, 3)
-)  # fmt: skip
+exact_by = jax.jit(jax.jacfwd(results, argnums=5), static_argnums=(0, 1, 2))
+solved_at = jax.jit(jax.vmap(results, in_axes=(None, None, None, None, None, 0, None, None)), static_argnums=(0, 1, 2))
 
 
 def agree(muscle: mk.Muscle, names: tuple[str, ...], state: Equilibrium, tolerance: float = 1e-6) -> None:
@@ -86,15 +84,16 @@ def agree(muscle: mk.Muscle, names: tuple[str, ...], state: Equilibrium, toleran
     held = Held.of(**{name: getattr(state, name) for name in names})
     leaves, tree = jax.tree.flatten(muscle)
     at, n = np.array([*leaves, *held.values]), len(leaves) + 2
-    known, static = (state.problem.b, state.state), (state.problem.basis, tree, held.names)
-    exact = np.asarray(exact_by(*static, False, at, np.ones(n), *known))
-    value = np.asarray(solved_at(*static, True, at, np.ones((1, n)), *known))[0]
+    known, static = (state.problem.b, state.state), (state.problem.basis, tree)
+    which = jnp.asarray(rows_of(held.names, 2)[1])
+    exact = np.asarray(exact_by(*static, False, which, at, np.ones(n), *known))
+    value = np.asarray(solved_at(*static, True, which, at, np.ones((1, n)), *known))[0]
     size = np.abs(value)[:, None] + 1e-300
     steps = 2e-3 / np.maximum(
         1.0, np.max(np.abs(exact) / size, axis=0, where=np.abs(value)[:, None] > 1e-9, initial=1.0)
     )
     changed = 1.0 + np.einsum("o,kj->okj", OFFSETS, np.diag(steps))
-    near = np.asarray(solved_at(*static, True, at, changed.reshape(-1, n), *known))
+    near = np.asarray(solved_at(*static, True, which, at, changed.reshape(-1, n), *known))
     near = np.einsum("o,okr->rk", WEIGHTS, near.reshape(len(OFFSETS), n, -1)) / steps
     error = np.abs(near - exact) / np.maximum(np.abs(exact), size)
     assert error.max() < tolerance, (error.max(), np.unravel_index(error.argmax(), error.shape))

@@ -19,10 +19,12 @@ from mckibben.solver.bench import Bench
 from mckibben.solver.find import equilibrium
 from mckibben.solver.follow import follow_to
 from mckibben.solver.path import INTERRUPTED, LOOSE, Watch
+from mckibben.solver.threads import one_thread
 
 __all__ = ["sought_again"]
 
 
+@one_thread()
 def sought_again(bench: Bench, part: Part, b: float, tolerance: float, watch: Watch = lambda k, n: None) -> Part:
     """A step with the states that were not stable sought again; `part` itself where all are."""
     if not part.path:

@@ -13,6 +13,7 @@ from mckibben.search.walk import Look, look
 from mckibben.solver.bench import Bench, sizes_for
 from mckibben.solver.find import find
 from mckibben.solver.held import Held
+from mckibben.solver.threads import one_thread
 from mckibben.units import show
 
 __all__ = ["UNSTABLE", "Answer", "answer", "seek"]
@@ -46,6 +47,7 @@ class Answer:
         return Judgement(self.verdict, self.reason, shape)
 
 
+@one_thread()
 def answer(bench: Bench, held: Held, tolerance: float, b: float | None = None, thorough: bool = True) -> Answer:
     """The state at which two things are held: straight, then along the way there, then from other starts.
 

@@ -14,6 +14,7 @@ from mckibben.search.walk import BranchEnd, branch_end, look
 from mckibben.solver.bench import Bench
 from mckibben.solver.find import find
 from mckibben.solver.held import Held
+from mckibben.solver.threads import one_thread
 from mckibben.spec import Muscle, Path, SpecError, Step
 from mckibben.spec.text import to_toml
 from mckibben.units import show
@@ -75,6 +76,7 @@ class Limits:
     force_extremum_length: float  #: length there
 
 
+@one_thread()
 def limits(muscle: Muscle, *, pressure: Any) -> Limits:
     """Limits of a muscle at one gauge pressure, on the path from its initial length to shorter ones.
 
@@ -184,6 +186,7 @@ def least_pressure(muscle: Muscle, *, length: Any = None, contraction: Any = Non
     return Pressure(found, reason)
 
 
+@one_thread()
 def holding(
     bench: Bench, length: float, pressure: float, tolerance: float = 1e-10, shapes: bool = True, size: int = SIZE
 ) -> float:

@@ -12,7 +12,7 @@ from mckibben.compiled.kernel import kernel
 from mckibben.discretise.fields import place
 from mckibben.discretise.placement import crowdings
 from mckibben.discretise.spectral import Line
-from mckibben.experiments.run import solved
+from mckibben.experiments.run import crowding_for, solved
 from mckibben.measure.read import read
 from mckibben.model.parameters import Number, Parameters, parameters
 from mckibben.results.variables import OBSERVED
@@ -100,7 +100,7 @@ def solved_states(
 ) -> tuple[Basis, float, tuple[Unknowns, ...]]:
     """Discretisation, placement and states of every step by the robust search; NaN where there are none."""
     bench = Bench.of(muscle)
-    parts = solved(bench, steps, tolerance)
+    parts = solved(bench, steps, crowding_for(bench, steps), tolerance)
     problem = next((part.survey.problem for part in parts if part.survey is not None), None)
     if problem is None:
         problem = bench.problem(SIZE, 1.0)

@@ -21,9 +21,10 @@ from mckibben.solver.find import at_rest, find, readings
 from mckibben.solver.held import NAMES, Held
 from mckibben.solver.path import INTERRUPTED, LOOSE, Trace, Watch, trace
 from mckibben.solver.problem import Basis, Problem
+from mckibben.solver.threads import one_thread
 from mckibben.spec import Along, Muscle, Step, Test
 
-__all__ = ["MuscleWarning", "corners", "run", "solved"]
+__all__ = ["MuscleWarning", "corners", "crowding_for", "run", "solved"]
 
 
 def run(
@@ -60,9 +61,9 @@ def run(
     """
     bench = Bench.of(muscle)
     steps, tell = test.as_steps(muscle), watch or (lambda k, n: None)
-    parts = solved(bench, steps, tolerance, discretisation, tell)
+    b = crowding_for(bench, steps)
+    parts = solved(bench, steps, b, tolerance, discretisation, tell)
     if discretisation == "spectral":
-        b = _crowding(bench, steps)
         for k, part in enumerate(parts):
             if not any(one.why == INTERRUPTED for one in parts):
                 parts[k] = sought_again(bench, part, b, tolerance, tell)
@@ -72,17 +73,18 @@ def run(
     return result
 
 
+@one_thread()
 def solved(
     bench: Bench,
     steps: tuple[Step, ...],
+    b: float,
     tolerance: float = 1e-6,
     discretisation: str = "spectral",
     watch: Watch = lambda k, n: None,
 ) -> list[Part]:
-    """The states of every step, on as many unknowns as the tolerance needs."""
+    """The states of every step, on as many unknowns as the tolerance needs, their points crowded by b."""
     sizes = sizes_for(discretisation, tolerance)
     _prepare(bench.basis(sizes[0], discretisation), bench.p, steps)
-    b = _crowding(bench, steps)
     for size in sizes:
         parts = _follow(bench, bench.problem(size, b, discretisation), steps, tolerance, watch)
         errors = [float(part.survey.error.max()) for part in parts if part.survey is not None]
@@ -98,7 +100,7 @@ def _prepare(basis: Basis, p: Parameters, steps: tuple[Step, ...]) -> None:
         surveying.prepare(basis, p, 0.0, count)
 
 
-def _crowding(bench: Bench, steps: tuple[Step, ...]) -> float:
+def crowding_for(bench: Bench, steps: tuple[Step, ...]) -> float:
     """Point placement that serves the whole test."""
     rows = [row for step in steps for row in corners(step, float(bench.p.H0), NEARLY * bench.longest)]
     return crowding(bench.p, *np.array(rows).T)

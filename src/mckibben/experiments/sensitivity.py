@@ -13,7 +13,7 @@ from mckibben.compiled.arrays import Array
 from mckibben.compiled.kernel import kernel
 from mckibben.discretise.fields import place
 from mckibben.experiments.response import differentiable, settled
-from mckibben.experiments.run import solved
+from mckibben.experiments.run import crowding_for, solved
 from mckibben.measure.judge import Judgement
 from mckibben.measure.read import read
 from mckibben.measure.report import Part, versions
@@ -25,6 +25,7 @@ from mckibben.solver.bench import Bench
 from mckibben.solver.from_rest import reading, rest
 from mckibben.solver.problem import Basis, Problem
 from mckibben.solver.system import Unknowns
+from mckibben.solver.threads import one_thread
 from mckibben.spec import Muscle, SpecError, Step, Test, numbers
 from mckibben.spec.declared import Declared, evolved
 from mckibben.spec.errors import nearest
@@ -75,7 +76,8 @@ def sensitivity(
     known = {name: (declared, number) for name, declared, number in numbers(muscle)}
     known |= {f"test.{name}": (declared, number) for name, declared, number in numbers(test)}
     wanted = _numbers(by, tuple(known))
-    parts = solved(Bench.of(muscle), steps, tolerance)
+    bench = Bench.of(muscle)
+    parts = solved(bench, steps, crowding_for(bench, steps), tolerance)
     judgement = _judgement(parts[index], row)
     value, slope, size = _derivatives(muscle, test, steps, parts, index, row, judgement, len(known))
     value, slope, size = value[columns], slope[:, columns], size[columns]
@@ -148,6 +150,7 @@ def _judgement(part: Part, row: int) -> Judgement:
     return attrs.evolve(lost, verdict=Verdict.NO_EQUILIBRIUM) if row >= max(part.reached, part.possible) else lost
 
 
+@one_thread()
 def _derivatives(
     muscle: Muscle, test: Test, steps: tuple[Step, ...], parts: list[Part], index: int, row: int, judgement: Judgement,
     count: int,

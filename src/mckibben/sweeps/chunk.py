@@ -13,6 +13,7 @@ from mckibben.experiments.run import MuscleWarning, run
 from mckibben.measure.survey import survey
 from mckibben.solver.path import INTERRUPTED
 from mckibben.solver.problem import Problem
+from mckibben.solver.threads import one_thread
 from mckibben.spec import SpecError
 from mckibben.sweeps.batches import Solved, solve_together
 from mckibben.sweeps.groups import groups
@@ -22,6 +23,7 @@ from mckibben.sweeps.plan import Design, Piece
 __all__ = ["solve_piece"]
 
 
+@one_thread()
 def solve_piece(piece: Piece, watch: Callable[[int], None] | None = None) -> Columns:
     """What is kept of each design of `piece`; `watch` is told how many are done.
 
