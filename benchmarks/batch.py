@@ -19,7 +19,7 @@ from mckibben.discretise.spectral import Line
 from mckibben.measure.many import appraised
 from mckibben.solver.batch import march
 from mckibben.solver.newton import batch_size
-from mckibben.sweeps import batches
+from mckibben.sweeps import batches, paths
 from mckibben.sweeps.groups import Group, groups
 from mckibben.sweeps.plan import plan
 
@@ -45,7 +45,7 @@ def designs(count: int = CURVES) -> Group:
 def captured(group: Group, tolerance: float = TOLERANCE) -> dict[str, list[tuple[Any, ...]]]:
     """What batches give the compiled functions, call by call."""
     calls: dict[str, list[tuple[Any, ...]]] = {"march": [], "appraised": []}
-    before = batches.march, batches.appraised
+    before = paths.march, batches.appraised
 
     def keep(name: str, function: Any) -> Any:
         def call(*args: Any) -> Any:
@@ -54,11 +54,11 @@ def captured(group: Group, tolerance: float = TOLERANCE) -> dict[str, list[tuple
 
         return call
 
-    batches.march, batches.appraised = keep("march", march), keep("appraised", appraised)
+    paths.march, batches.appraised = keep("march", march), keep("appraised", appraised)
     try:
         batches.solve_together(group, tolerance)
     finally:
-        batches.march, batches.appraised = before
+        paths.march, batches.appraised = before
     return calls
 
 
@@ -72,10 +72,10 @@ def measure() -> list[dict[str, Any]]:
     """Rows with curves per second."""
     group = designs()
     cold, calls = once(lambda: captured(group.take(np.zeros(1, int)))), captured(group)
-    paths, states = calls["march"], calls["appraised"]
+    courses, states = calls["march"], calls["appraised"]
     off = accuracy(group)
     rows = []
-    for name, function, given in (("solving", march, paths), ("appraising", appraised, states)):
+    for name, function, given in (("solving", march, courses), ("appraising", appraised, states)):
         for threads in (1, THREADS):
             times = timed(lambda function=function, given=given, threads=threads: together(function, given, threads), 5)
             times["cold_s"] = cold[0]["median_s"]  # of one batch, solved and appraised: both compile
@@ -84,7 +84,7 @@ def measure() -> list[dict[str, Any]]:
     rows.append(row("512 curves, mk.sweep in full, one process", times, off))
     times = timed(lambda: mk.sweep(MUSCLE, TEST, OVER, workers=0), 2)
     rows.append(row("512 curves, mk.sweep at 1e-6, one process", times, accuracy(group, 1e-6)))
-    systems = np.mean([int(np.asarray(march(*path).systems).max()) for path in paths])
+    systems = np.mean([int(np.asarray(march(*path).systems).max()) for path in courses])
     return [*rows, {**floor(UNKNOWNS, POINTS + systems), "systems_per_curve": float(POINTS + systems)}]
 
 

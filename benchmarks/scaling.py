@@ -46,10 +46,12 @@ def following(unknowns: int, states: int) -> dict[str, Any]:
 def together() -> list[dict[str, Any]]:
     """Curves that advance in step, per curve."""
     (path,), rows = batch.captured(batch.designs(64))["march"], []
-    basis, on, which, rest, targets, count = path
+    basis, on, which, rest, targets, count, limit = path
     for size in TOGETHER:
         some = jax.tree.map(lambda leaf, size=size: leaf[:size], (on, rest, targets))
-        times = timed(lambda some=some: jax.block_until_ready(march(basis, some[0], which, some[1], some[2], count)), 9)
+        times = timed(
+            lambda some=some: jax.block_until_ready(march(basis, some[0], which, some[1], some[2], count, limit)), 9
+        )
         rows.append({"muscles": size, **{k: v / size if k != "repeats" else v for k, v in times.items()}})
     return rows
 

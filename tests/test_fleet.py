@@ -1,6 +1,7 @@
 """Batches of muscles against one muscle at a time."""
 
 import warnings
+from typing import Any
 
 import jax
 import numpy as np
@@ -8,6 +9,7 @@ import pytest
 
 import mckibben as mk
 from mckibben.experiments.run import MuscleWarning
+from mckibben.spec import Test
 from mckibben.sweeps.batches import Solved, solve_together
 from mckibben.sweeps.groups import Group, group_of, groups
 from mckibben.sweeps.plan import Piece
@@ -28,7 +30,7 @@ def muscles(ends: str) -> list[mk.Muscle]:
     return found
 
 
-def singly(muscle: mk.Muscle, test: mk.Isometric | mk.Isobaric | mk.Isotonic, tolerance: float) -> mk.Result:
+def singly(muscle: mk.Muscle, test: Test, tolerance: float) -> mk.Result:
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", MuscleWarning)
         return mk.run(muscle, test, tolerance=tolerance)
@@ -41,10 +43,16 @@ def singly(muscle: mk.Muscle, test: mk.Isometric | mk.Isobaric | mk.Isotonic, to
         mk.Isometric(length="105 mm", pressure="0 to 1 bar", points=6),
         mk.Isobaric(pressure="0.8 bar", length="100 mm to 80 mm", points=5),
         mk.Isotonic(force="20 N", pressure="0.5 to 1 bar", points=4),
+        mk.Protocol(
+            [
+                mk.Step(length="to 105 mm", pressure="0.2 bar", points=3),
+                mk.Step(length="hold", pressure="to 1 bar", points=3),
+            ]
+        ),
     ],
     ids=lambda test: test.kind,
 )
-def test_a_batch_gives_the_numbers_of_single_runs(ends: str, test: mk.Isometric | mk.Isobaric | mk.Isotonic) -> None:
+def test_a_batch_gives_the_numbers_of_single_runs(ends: str, test: Test) -> None:
     some = muscles(ends)
     asked = [group_of(muscle, test) for muscle in some]
     if ends == "free" and test.kind == "isotonic":
@@ -138,3 +146,60 @@ def test_groups_have_the_numbers_of_the_designs_one_by_one() -> None:
 )
 def test_tests_that_only_a_single_run_can_do(test: mk.Protocol | mk.Step | mk.Isometric) -> None:
     assert group_of(PAPER, test) is None
+
+
+def ramps(first: str = "0.2 bar", second: str = "to 1 bar") -> mk.Protocol:
+    """To a length at one pressure, then to another pressure."""
+    return mk.Protocol(
+        [mk.Step(length="to 110 mm", pressure=first, points=2), mk.Step(length="hold", pressure=second, points=2)]
+    )
+
+
+def plateau(pressure: str = "1 bar") -> mk.Protocol:
+    """A protocol of one step."""
+    return mk.Protocol([mk.Step(length="110 mm", pressure=pressure, points=1)])
+
+
+@pytest.mark.parametrize(
+    ("made", "field", "values"),
+    [
+        (plateau, "test.steps.0.pressure", ("0.5 bar", "0.8 bar")),
+        (ramps, "test.steps.0.pressure", ("0.3 bar", "0.5 bar")),
+        (lambda second: ramps(second=second), "test.steps.1.pressure", ("to 0.5 bar", "to 0.8 bar")),
+    ],
+)
+def test_what_a_protocol_varies_is_what_its_steps_hold(made: Any, field: str, values: tuple[str, ...]) -> None:
+    """Also in a protocol of one step, where every design once got the values of the first."""
+    swept = mk.sweep(PAPER, made(values[0]), {field: list(values)}, workers=0)
+    assert (swept["method"] == 0).all()
+    for k, value in enumerate(values):
+        curve = singly(PAPER, made(value), 1e-6)
+        np.testing.assert_allclose(swept["pressure"][k], curve.pressure, rtol=1e-12)
+        np.testing.assert_allclose(swept["force"][k], curve.force, rtol=1e-9, atol=1e-9)
+
+
+@pytest.mark.parametrize(
+    "test",
+    [
+        mk.Isometric(length="100 mm", pressure="0 to 4 bar", points=5),
+        mk.Isobaric(pressure="2 bar", length="80 to 110 mm", points=5),
+        mk.Isotonic(force="20 N", pressure="0 to 4 bar", points=5),
+        mk.FreeContraction(pressure="0 to 4 bar", points=5),
+        mk.BlockedForce(pressure="0 to 4 bar", points=5),
+        mk.Protocol(
+            [
+                mk.Step(length="to 105 mm", pressure="0.2 bar", points=5),
+                mk.Step(length="hold", pressure="to 3 bar", points=5),
+            ]
+        ),
+    ],
+    ids=lambda test: test.kind,
+)
+def test_coarse_ramps_stay_in_the_batch(test: Test) -> None:
+    """At most one design in a hundred is solved singly, though the first steps in pressure are far too long."""
+    angles, walls = np.meshgrid(np.radians(np.linspace(32.0, 40.0, 10)), np.linspace(0.6e-3, 1.5e-3, 10))
+    rows = tuple(zip(angles.ravel().tolist(), walls.ravel().tolist(), strict=True))
+    states = sum(step.points for step in test.as_steps(PAPER))
+    piece = Piece(PAPER, test, ("braid.angle", "chamber.thickness"), rows, states, 1e-6)
+    done = sum(len(one.group) for group in groups(piece) for one in solve_together(group, 1e-6))
+    assert done >= 99

@@ -5,6 +5,7 @@ import sys
 
 import jax
 import jax.numpy as jnp
+import numpy as np
 import pytest
 
 import mckibben as mk
@@ -100,3 +101,34 @@ def test_specification_alone_loads_no_jax_and_jax_first_registers() -> None:
     first = "import jax, mckibben as mk; assert len(jax.tree.leaves(mk.presets.paper())) == 10"
     for code in (alone, first):
         assert subprocess.run([sys.executable, "-c", code], check=False, timeout=120).returncode == 0
+
+
+FIRST_CALL = """
+import jax, mckibben as mk
+muscle, test = mk.presets.paper(), mk.Isometric(length=0.11, pressure=[1e5])
+def force(angle):
+    return mk.response(muscle.replace("braid.angle", angle), test)["force"][-1]
+print(float({call}))
+"""
+ANGLE, SMALL = 0.65, 1e-3
+CALLS = {  # what is called first, and with which weights it is a sum of forces at ANGLE - SMALL, ANGLE, ANGLE + SMALL
+    "jit": ("jax.jit(force)(0.65)", (0.0, 1.0, 0.0)),
+    "vmap": ("jax.vmap(force)(jax.numpy.array([0.64, 0.65]))[1]", (0.0, 1.0, 0.0)),
+    "grad": ("jax.grad(force)(0.65)", (-0.5 / SMALL, 0.0, 0.5 / SMALL)),
+    "jvp": ("jax.jvp(force, (0.65,), (1.0,))[1]", (-0.5 / SMALL, 0.0, 0.5 / SMALL)),
+    "jacfwd": ("jax.jacfwd(force)(0.65)", (-0.5 / SMALL, 0.0, 0.5 / SMALL)),
+    "hessian": ("jax.hessian(force)(0.65)", (1.0 / SMALL**2, -2.0 / SMALL**2, 1.0 / SMALL**2)),
+}
+
+
+@pytest.mark.parametrize("name", CALLS)
+def test_a_transformation_as_the_first_call_of_a_process(name: str) -> None:
+    """In 64 bits from the first trace on. In JAX's own 32 the values were wrong, or the call failed."""
+    call, weights = CALLS[name]
+    code = FIRST_CALL.format(call=call)
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=False)
+    assert done.returncode == 0, done.stderr
+    test = mk.Isometric(length=0.11, pressure=[1e5])
+    angles = (ANGLE - SMALL, ANGLE, ANGLE + SMALL)
+    forces = [float(mk.response(PAPER.replace("braid.angle", angle), test)["force"][-1]) for angle in angles]
+    assert float(done.stdout) == pytest.approx(float(np.dot(weights, forces)), rel=1e-4)

@@ -17,7 +17,7 @@ from mckibben.solver.problem import Basis, Problem
 from mckibben.solver.stability import count_modes, of_states
 from mckibben.solver.system import Unknowns
 
-__all__ = ["PLAIN_SLOPE", "Survey", "error_bound", "errors", "padded_states", "prepare", "survey"]
+__all__ = ["PLAIN_SLOPE", "STRETCHED", "Survey", "error_bound", "errors", "padded_states", "prepare", "survey"]
 
 ROUNDING = 1e-11
 """Relative error that rounding leaves in a force or length at best."""

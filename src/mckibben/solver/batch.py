@@ -78,7 +78,7 @@ def _plus(state: Unknowns, change: Unknowns) -> Unknowns:
     return jax.tree.map(jnp.add, state, change)
 
 
-def arrive(basis: Basis, on: Placed, which: Array, rest: Array, target: Array, limit: int) -> Arrival:
+def arrive(basis: Basis, on: Placed, which: Array, rest: Array, target: Array, limit: Array) -> Arrival:
     """From the undeformed muscle, which rests at `rest`, to `target`: the pressure first, which stretches the fibres.
 
     Steps double as long as Newton follows; at most `limit` systems are solved.
@@ -161,7 +161,7 @@ class March(NamedTuple):
     rows: Course
 
 
-@partial(kernel, static_argnames=("limit", "corrections"))
+@partial(kernel, static_argnames=("corrections",))
 def march(
     basis: Basis,
     on: Placed,
@@ -169,11 +169,11 @@ def march(
     rest: Float[Array, "batch 2"],
     targets: Float[Array, "batch n 2"],
     count: Int[Array, ""],
+    limit: Int[Array, ""],
     *,
-    limit: int = 40,
     corrections: int = 1,
 ) -> March:
-    """Every muscle from `rest` to its first target and along the others; all quantities dimensionless."""
+    """Every muscle from `rest` to its first target, by at most `limit` systems, and along the others; dimensionless."""
 
     def one(on: Placed, rest: Array, targets: Array) -> March:
         first = arrive(basis, on, which, rest, targets[0], limit)

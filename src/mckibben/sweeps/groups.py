@@ -14,13 +14,13 @@ import jax
 import numpy as np
 
 from mckibben.model.parameters import Parameters, numbers
-from mckibben.spec import Along, BlockedForce, Braid, CustomLaw, Ends, Muscle, Path, SpecError, Step, Test
+from mckibben.spec import Along, BlockedForce, Braid, CustomLaw, Ends, Muscle, Path, Protocol, SpecError, Step, Test
 from mckibben.spec import numbers as leaves_of
 from mckibben.spec.angle import from_parallels
 from mckibben.spec.vary import changed
 from mckibben.sweeps.plan import Piece
 
-__all__ = ["Group", "group_of", "groups"]
+__all__ = ["Group", "group_of", "groups", "surely_reached"]
 
 NEAR_EXTENSION = 0.98
 """Share of a length surely below full extension from which on a design is solved singly."""
@@ -103,11 +103,11 @@ def _group(muscle: Muscle, test: Test, values: dict[str, np.ndarray], index: np.
         for step in getattr(test, "steps", (test,))
         if hasattr(step, "length")
     )
-    if "test.contraction" in values or (relative and "braid.length" in values):
+    if any(name.endswith(".contraction") for name in values) or (relative and "braid.length" in values):
         return None  # so it is here
     steps = test.as_steps(muscle)
-    step, held = steps[0], tuple(str(name) for name in steps[0].controls)
-    if len(steps) > 1 or step.gas is not None or step.along != Along.VALUES or held[1:] != ("pressure",):
+    held = tuple(str(name) for name in steps[0].controls)
+    if held[1:] != ("pressure",) or any(not _followed(step, held) for step in steps):
         return None
     if muscle.ends == Ends.FREE and held[0] == "force":  # nearly singular: Newton without a search does not settle
         return None
@@ -117,13 +117,24 @@ def _group(muscle: Muscle, test: Test, values: dict[str, np.ndarray], index: np.
     count = len(index)
     valid = np.broadcast_to(_valid(several), (count,))
     p: Parameters = jax.tree.map(lambda x: np.array(np.broadcast_to(np.asarray(x, float), (count,))), numbers(several))
-    knots = {name: _knots(step, name, values, p, count) for name in held}
-    wanted = np.stack([getattr(step, name).weights(step.points) @ knots[name] for name in held], axis=-1)
-    wanted = np.moveaxis(wanted, 1, 0)
+    present = {"length": p.H0, "force": np.zeros(count), "pressure": np.zeros(count)}
+    rows, corners = [], []
+    for k, step in enumerate(steps):
+        place = f"test.steps.{k}" if isinstance(test, Protocol) else "test"
+        knots = {name: _knots(getattr(step, name), values.get(f"{place}.{name}"), present[name]) for name in held}
+        rows.append(np.stack([getattr(step, name).weights(step.points) @ knots[name] for name in held], axis=-1))
+        corners.append(_corners(step, held, knots, p, count))
+        present |= {name: knots[name][-1] for name in held}
+    wanted = np.moveaxis(np.concatenate(rows), 1, 0)
     if held[0] == "length":
-        valid = valid & (wanted[:, :, 0].max(axis=1) <= NEAR_EXTENSION * _surely_reached(p, str(muscle.ends)))
-    made = Group(index, p, str(muscle.ends), (held[0], held[1]), wanted, _corners(step, held, knots, p, count))
+        valid = valid & (wanted[:, :, 0].max(axis=1) <= NEAR_EXTENSION * surely_reached(p, str(muscle.ends)))
+    made = Group(index, p, str(muscle.ends), (held[0], held[1]), wanted, np.concatenate(corners, axis=1))
     return made.take(np.flatnonzero(valid)) if valid.any() else None
+
+
+def _followed(step: Step, held: tuple[str, ...]) -> bool:
+    """Whether a batch can follow a step: its values in turn, with the same held as in the steps before."""
+    return step.gas is None and step.along == Along.VALUES and tuple(str(name) for name in step.controls) == held
 
 
 def _with(muscle: Muscle, values: dict[str, np.ndarray]) -> Muscle | None:
@@ -155,14 +166,11 @@ def _valid(muscle: Muscle) -> Any:
     return good
 
 
-def _knots(step: Step, name: str, values: dict[str, np.ndarray], p: Parameters, count: int) -> np.ndarray:
-    """Numbers (k, designs) between which a controlled quantity goes, from that at rest on where it is needed."""
-    path = getattr(step, name)
-    given = values.get(f"test.{name}", np.tile(np.array(path.waypoints, float), (count, 1))).T
-    if not path.needs_present:
-        return given
-    rest = p.H0 if name == "length" else np.zeros(count)
-    return np.concatenate([rest[None], given])
+def _knots(path: Path, varied: np.ndarray | None, present: np.ndarray) -> np.ndarray:
+    """Numbers (k, designs) between which a controlled quantity goes, from the present one on where it is needed."""
+    count = len(present)
+    given = np.tile(np.array(path.waypoints, float), (count, 1)).T if varied is None else varied.T
+    return np.concatenate([present[None], given]) if path.needs_present else given
 
 
 def _corners(step: Step, held: tuple[str, ...], knots: dict[str, np.ndarray], p: Parameters, count: int) -> np.ndarray:
@@ -178,7 +186,7 @@ def _corners(step: Step, held: tuple[str, ...], knots: dict[str, np.ndarray], p:
     return np.array([[h, F, P] for h in lengths for F in forces for P in pressures]).transpose(2, 0, 1)
 
 
-def _surely_reached(p: Parameters, ends: str) -> np.ndarray:
+def surely_reached(p: Parameters, ends: str) -> np.ndarray:
     """A length [m] below full extension (theory page): that of a long muscle less what its two ends take."""
     fibre = p.H0 / np.sin(p.theta0)
     if ends == Ends.FREE:
