@@ -1,0 +1,244 @@
+"""Derivatives of `mk.response` by every number of random muscles and tests, against central differences.
+
+    python validation/gradients.py [--count 200] [--workers 2] [--report-only]
+
+Derivatives are those of the default call, differences those of calls with a tolerance of 1e-10. The slopes go to
+out/gradients.json, the tables into validation/README.md.
+"""
+
+import argparse
+import itertools
+import json
+import multiprocessing
+from concurrent.futures import ProcessPoolExecutor
+from functools import partial
+from textwrap import fill
+from typing import Any
+
+import environment
+import jax
+import numpy as np
+from sample import Case, draw_muscle, muscle_of, ordinary_force
+from sections import put
+from summary import table
+
+import mckibben as mk
+from mckibben import spec
+
+SEED = 20261126
+KINDS = ("isometric", "isobaric", "isotonic", "free contraction", "blocked force", "volume held", "sealed gas")
+ROWS = environment.OUT / "gradients.json"
+STEP = 1e-3
+"""Largest relative step of a number, and largest relative change of a result in a step."""
+FINE = 1e-10
+"""Tolerance of the calls that differences are taken of."""
+SMALL = 1e-3
+"""Slopes below this share of a result's largest one are held against that share."""
+LIMIT = 1e-5
+"""Relative difference above which a slope is listed."""
+RESULTS = ("length", "force", "pressure", "volume", "energy", "energy_chamber", "peak_fibre_tension", "largest_radius")
+
+Values = dict[str, np.ndarray]
+
+
+def draw(k: int) -> tuple[Case, Any]:
+    """Muscle k and a test of it."""
+    rng = np.random.default_rng((SEED, k))
+    case = draw_muscle(k, rng) | {"kind": KINDS[k // 2 % len(KINDS)]}
+    P, H0 = float(rng.uniform(0.02e6, 0.6e6)), case["muscle"]["H0"]
+    a, b = (float(0.8 * H0 + share * (0.98 * case["longest"] - 0.8 * H0)) for share in rng.random(2))
+    pressures = [0.5 * P, P]
+    match case["kind"]:
+        case "isometric":
+            return case, mk.Isometric(length=a, pressure=pressures)
+        case "isobaric":
+            return case, mk.Isobaric(pressure=P, length=[a, b])
+        case "isotonic":
+            return case, mk.Isotonic(force=ordinary_force(case, float(rng.random()), P), pressure=pressures)
+        case "free contraction":
+            return case, mk.FreeContraction(pressure=pressures)
+        case "blocked force":
+            return case, mk.BlockedForce(pressure=pressures)
+        case "volume held":
+            volumes = mk.response(muscle_of(case), mk.Isometric(length=a, pressure=pressures))["volume"]
+            return case, mk.Step(length=a, volume=[float(volume) for volume in volumes]) if np.isfinite(
+                volumes
+            ).all() else None
+    return case, mk.Protocol([mk.Step(length=a, pressure=P), mk.Step(length=b, gas="isothermal")])
+
+
+def values(leaves: Any, tree: Any, tolerance: float) -> dict[str, Any]:
+    """The results of a muscle and a test given by their numbers."""
+    muscle, test = jax.tree.unflatten(tree, list(leaves))
+    found = mk.response(muscle, test, tolerance=tolerance)
+    return {name: found[name] for name in RESULTS}
+
+
+def measure(k: int) -> dict[str, Any]:
+    """Slopes of every result at every state by every number, both ways; none where a state was not reached."""
+    case, test = draw(k)
+    row: dict[str, Any] = {"id": k, "kind": case["kind"], "ends": case["ends"], "slopes": None}
+    if test is None:
+        return row
+    muscle = muscle_of(case)
+    given, tree = jax.tree.flatten((muscle, test))
+    leaves = np.array([float(leaf) for leaf in given])
+    at = {name: np.asarray(value) for name, value in values(leaves, tree, FINE).items()}
+    jacobian = jax.jacfwd(partial(values, tree=tree, tolerance=1e-6))(leaves)
+    row["finite"] = all(np.isfinite(value).all() for value in at.values())
+    if not row["finite"]:
+        return row | {"told": not np.isfinite(np.concatenate([slope.ravel() for slope in jacobian.values()])).all()}
+    sizes = natural(case, at)
+    shares = {name: np.asarray(jacobian[name]) * leaves / sizes[name][:, None] for name in RESULTS}
+    strongest = np.max([np.abs(share).max(axis=0) for share in shares.values()], axis=0)
+    pairs = [difference(leaves, tree, i, STEP / max(1.0, float(strongest[i]))) for i in range(len(leaves))]
+    row["numbers"] = [f"muscle.{name}" for name, _, _ in spec.numbers(muscle)]
+    row["numbers"] += [f"test.{name}" for name, _, _ in spec.numbers(test)]
+    row["slopes"] = {
+        name: {
+            "by": shares[name].tolist(),
+            "difference": _share([pair[0][name] for pair in pairs], leaves, sizes[name]),
+            "doubt": _share([pair[1][name] for pair in pairs], leaves, sizes[name]),
+        }
+        for name in RESULTS
+    }
+    if max(line["relative"] for line in compared(row)) > LIMIT:
+        fine = jax.jacfwd(partial(values, tree=tree, tolerance=FINE))(leaves)
+        for name in RESULTS:
+            row["slopes"][name]["fine"] = (np.asarray(fine[name]) * leaves / sizes[name][:, None]).tolist()
+    return row
+
+
+def _share(slopes: list[np.ndarray], leaves: np.ndarray, sizes: np.ndarray) -> list[list[float]]:
+    """Slopes by each number as per cent per per cent (states, numbers)."""
+    shares: list[list[float]] = (np.array(slopes).T * leaves / sizes[:, None]).tolist()
+    return shares
+
+
+def natural(case: Case, at: Values) -> Values:
+    """Sizes that results are held against: a force may pass through zero."""
+    sizes = {name: np.abs(value) for name, value in at.items()}
+    sizes["force"] = sizes["force"] + np.pi * case["muscle"]["R0"] ** 2 * sizes["pressure"]
+    sizes["energy_chamber"] = sizes["energy"]
+    return sizes
+
+
+def difference(leaves: np.ndarray, tree: Any, i: int, step: float) -> tuple[Values, Values]:
+    """Slopes by number i from central differences of three steps, each half of the last, and how sure they are."""
+    slopes = []
+    for part in (1.0, 0.5, 0.25):
+        h = part * step * abs(leaves[i])
+        up, down = (
+            values(np.where(np.arange(len(leaves)) == i, leaves + side * h, leaves), tree, FINE) for side in (1, -1)
+        )
+        slopes.append({name: (np.asarray(up[name]) - np.asarray(down[name])) / (2.0 * h) for name in RESULTS})
+    coarse, fine = ({name: (4.0 * b[name] - a[name]) / 3.0 for name in RESULTS} for a, b in itertools.pairwise(slopes))
+    return fine, {name: np.abs(fine[name] - coarse[name]) for name in RESULTS}
+
+
+def group(ids: list[int]) -> list[dict[str, Any]]:
+    """Muscles of one kind of test and ends, which share what is compiled."""
+    return [safely(k) for k in ids]
+
+
+def safely(k: int) -> dict[str, Any]:
+    try:
+        return measure(k)
+    except Exception as error:
+        return {"id": k, "kind": KINDS[k // 2 % len(KINDS)], "slopes": None, "crash": repr(error)}
+
+
+def compared(row: dict[str, Any]) -> list[dict[str, Any]]:
+    """Every slope with its relative difference."""
+    lines = []
+    for name, found in row["slopes"].items():
+        by, difference, doubt, fine = (np.array(found.get(key, found["by"])) for key in KEYS)
+        size = np.maximum(np.abs(by), SMALL * np.maximum(np.abs(by).max(axis=1, keepdims=True), 1.0))
+        relative, doubtful, again = abs(by - difference) / size, doubt / size, abs(fine - difference) / size
+        for at in np.ndindex(by.shape):
+            lines.append({
+                "id": row["id"], "kind": row["kind"], "ends": row["ends"], "result": name, "state": at[0],
+                "number": row["numbers"][at[1]], "by": by[at], "difference": difference[at],
+                "relative": float(relative[at]), "doubt": float(doubtful[at]), "fine": float(again[at]),
+            })  # fmt: skip
+    return lines
+
+
+KEYS = ("by", "difference", "doubt", "fine")
+
+
+def wrong(line: dict[str, Any], key: str) -> bool:
+    """Whether a slope differs by more than the limit, and by more than the doubt of the differences explains."""
+    return bool(line[key] > max(LIMIT, 3.0 * line["doubt"]))
+
+
+def report(rows: list[dict[str, Any]]) -> list[str]:
+    """The section of the page."""
+    lines, slopes = [], [line for row in rows if row["slopes"] for line in compared(row)]
+    for kind in (*KINDS, "all"):
+        mine = [row for row in rows if kind in ("all", row["kind"])]
+        of = [line for line in slopes if kind in ("all", line["kind"])]
+        solved = sum(row["slopes"] is not None for row in mine)
+        lines.append([kind, len(mine), sum("crash" in row for row in mine), solved, *_numbers(of)])
+    results = [[name, *_numbers([line for line in slopes if line["result"] == name])] for name in RESULTS]
+    worst = sorted((line for line in slopes if wrong(line, "relative")), key=lambda line: -line["relative"])[:LISTED]
+    said = [
+        [line["id"], line["kind"], line["ends"], f"{line['result']} by {line['number']}", f"{line['by']:.8g}",
+         f"{line['difference']:.8g}", f"{line['relative']:.1e}", f"{line['doubt']:.1e}", f"{line['fine']:.1e}"]
+        for line in worst
+    ]  # fmt: skip
+    lost = [row for row in rows if row.get("finite") is False]
+    told = sum(row["told"] for row in lost)
+    text = fill(SAID.format(count=len(rows), results=", ".join(RESULTS), lost=len(lost), told=told), 120)
+    out = ["", *text.splitlines(), *table(["test", "muscles", "crashes", "with both states", *HEAD], lines)]
+    out += table(["result", *HEAD], results)
+    return [*out, "", "The largest differences beyond doubt:", *table(LAST, said)] if said else out
+
+
+LISTED = 12
+HEAD = ["slopes", "median difference", "99.9%", "largest", "above 1e-5", "beyond doubt", "also with 1e-10"]
+LAST = ["muscle", "test", "ends", "slope", "derivative", "by differences", "difference", "doubt", "with 1e-10"]
+
+
+def _numbers(of: list[dict[str, Any]]) -> list[Any]:
+    """What is counted of slopes."""
+    if not of:
+        return [0] + [""] * (len(HEAD) - 1)
+    relative = np.array([line["relative"] for line in of])
+    above, sure, still = (
+        sum(line["relative"] > LIMIT for line in of), sum(wrong(line, "relative") for line in of),
+        sum(wrong(line, "fine") for line in of),
+    )  # fmt: skip
+    quantiles = [f"{np.quantile(relative, q):.1e}" for q in (0.5, 0.999, 1.0)]
+    return [len(of), *quantiles, above, sure, still]
+
+
+SAID = """Written by `python validation/gradients.py`. {count} random muscles (`validation/sample.py`) with a test of
+two states each. The derivatives of the default call of `mk.response` by every number of the muscle and of the test
+(`jax.jacfwd`) of {results}, as per cent per per cent, against central differences of the same call with a tolerance of
+1e-10: three steps, each half of the last, so small that no result changes by more than about 0.1%, and the two pairs
+extrapolated (Richardson). How far the two extrapolations lie apart is the doubt of the differences; what is less than
+three times that is not held against the derivatives. A difference is relative to the slope, or to 1/1000 of the largest
+slope of the same result (at least 1) where that is more. Where a muscle's derivatives differ by more than 1e-5, those
+of a call with a tolerance of 1e-10 are compared too: what is gone then was the error of the discretisation. Of {lost}
+muscles a state was not reached; {told} of these have derivatives that are not finite, as they should."""
+
+
+def main() -> None:
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument("--count", type=int, default=200)
+    parser.add_argument("--workers", type=int, default=2)
+    parser.add_argument("--report-only", action="store_true")
+    asked = parser.parse_args()
+    if not asked.report_only:
+        environment.OUT.mkdir(exist_ok=True)
+        alike = 2 * len(KINDS)
+        groups = [list(range(first, asked.count, alike)) for first in range(alike)]
+        with ProcessPoolExecutor(asked.workers, multiprocessing.get_context("spawn")) as pool:
+            rows = [row for rows in pool.map(group, groups) for row in rows]
+        ROWS.write_text(json.dumps(rows), encoding="utf-8")
+    put("## Gradients", report(json.loads(ROWS.read_text(encoding="utf-8"))))
+
+
+if __name__ == "__main__":
+    main()
