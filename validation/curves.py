@@ -24,6 +24,8 @@ KINDS = ("isometric", "isobaric", "isotonic", "large isotonic", "free contractio
 """Isometric and isotonic over the pressure, isobaric over the length. A large force lies up to twice as far beyond the
 ordinary ones as those lie apart."""
 LINES = OUT / "curves.jsonl"
+LONG = 2.0
+"""Seconds of the processor after which a call may have been compiling."""
 
 
 def draw(k: int) -> Case:
@@ -58,17 +60,25 @@ def test_of(case: Case) -> Any:
 
 
 def timed(call: Callable[[], Any]) -> tuple[Any, dict[str, float]]:
-    """What a call gives, and its seconds by the clock and of the processor."""
-    start, worked = time.perf_counter(), time.process_time()
-    found = call()
-    return found, {"seconds": time.perf_counter() - start, "processor": time.process_time() - worked}
+    """What a call gives, and its seconds by the clock and of the processor.
+
+    One that takes long is made again: what it needs is then compiled.
+    """
+    for _ in range(2):
+        start, worked = time.perf_counter(), time.process_time()
+        found = call()
+        took = {"seconds": time.perf_counter() - start, "processor": time.process_time() - worked}
+        if took["processor"] < LONG:
+            break
+    return found, took
 
 
 def one(case: Case) -> dict[str, Any]:
     """A curve as `run`, `sweep` and `solve` give it."""
     muscle, test = muscle_of(case), test_of(case)
+    over = {"braid.fibres": [case["muscle"]["N"]]}
     curve, took = timed(lambda: mk.run(muscle, test))
-    data, sweep_took = timed(lambda: mk.sweep(muscle, test, {"braid.fibres": [case["muscle"]["N"]]}, workers=0))
+    data, sweep_took = timed(lambda: mk.sweep(muscle, test, over, workers=0))
     words = [word.replace("_", " ") for word in data["verdict"].attrs["flag_meanings"].split()]
     names = ("force", "length", "volume", "error_estimate")
     columns = {"run": curve.column, "sweep": lambda name: data[name].values[0]}

@@ -66,6 +66,15 @@ def judged(case: Case) -> dict[str, Any]:
     return {"case": case, "judges": judge_target(Bench.of(muscle_of(case)), Held.of(**case["held"]), case["id"])}
 
 
+def timed(case: Case) -> dict[str, Any]:
+    """Times of the default call on a case once more, when all that it needs is compiled."""
+    muscle = muscle_of(case)
+    mk.solve(muscle, **case["held"])
+    start, worked = time.perf_counter(), time.process_time()
+    mk.solve(muscle, **case["held"])
+    return {"case": case, "times": {"seconds": time.perf_counter() - start, "processor": time.process_time() - worked}}
+
+
 def pairs(held: Held) -> list[tuple[str, float]]:
     """Held names with values; pressure last and not zero, so that a relative miss can be said."""
     return [(name, value) for name, value in zip(held.names, held.values, strict=True) if name != "pressure" or value]
@@ -124,16 +133,18 @@ def read(file: Path) -> dict[int, dict[str, Any]]:
     return {row["case"]["id"]: row for row in rows}
 
 
-def files(sample: Sample) -> tuple[Path, Path]:
-    """Where the results of a sample are, and the judges' word."""
-    return OUT / f"random_muscles_{sample.name}.jsonl", OUT / f"random_muscles_{sample.name}_judged.jsonl"
+def file_of(sample: Sample, what: str = "") -> Path:
+    """Where the results of a sample are: of the default call, "_judged" or "_timed"."""
+    return OUT / f"random_muscles_{sample.name}{what}.jsonl"
 
 
 def done(sample: Sample) -> dict[int, dict[str, Any]]:
-    """Results so far, with the judges' word where they were asked."""
-    rows, judges = (read(file) for file in files(sample))
+    """Results so far, with the judges' word and with the times once all was compiled where those were asked."""
+    rows, judges, times = (read(file_of(sample, what)) for what in ("", "_judged", "_timed"))
     for k in rows.keys() & judges.keys():
         rows[k]["judges"] = judges[k]["judges"]
+    for k in rows.keys() & times.keys():
+        rows[k]["found"] |= times[k]["times"]
     return rows
 
 
@@ -159,10 +170,11 @@ def write_lines(
 def run(sample: Sample, count: int, workers: int) -> None:
     """The default call on everything; then the judges wherever it gave no stable state."""
     OUT.mkdir(exist_ok=True)
-    lines, judges = files(sample)
+    lines = file_of(sample)
     write_lines(safely, [draw(k, sample) for k in range(count)], lines, workers, warm)
     lost = [row["case"] for _, row in sorted(read(lines).items()) if row["found"]["verdict"] != "stable"]
-    write_lines(judged, lost, judges, workers)
+    write_lines(judged, lost, file_of(sample, "_judged"), workers)
+    write_lines(timed, lost, file_of(sample, "_timed"), workers)
 
 
 def main() -> None:
