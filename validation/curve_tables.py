@@ -65,7 +65,7 @@ far beyond that range as it is wide, of both signs. Each is given to `mk.run` an
 alone to `mk.solve`. Numbers differ where the force (over |F| + pi R0^2 P) or the length does by more than the two error
 estimates together."""
 
-TIMES = """Seconds of the calls with everything compiled (what took more than 2 s was made twice), two processes side by
+TIMES = """Seconds of the calls with everything compiled (what took more than 5 s was made twice), two processes side by
 side on a busy machine; processor seconds are those without the waiting. A curve fails where one of its states has no
 admissible equilibrium. Asked for at 99%: 5 s for a state that fails, 10 s for a curve."""
 

@@ -24,7 +24,7 @@ KINDS = ("isometric", "isobaric", "isotonic", "large isotonic", "free contractio
 """Isometric and isotonic over the pressure, isobaric over the length. A large force lies up to twice as far beyond the
 ordinary ones as those lie apart."""
 LINES = OUT / "curves.jsonl"
-LONG = 2.0
+LONG = 5.0
 """Seconds of the processor after which a call may have been compiling."""
 
 

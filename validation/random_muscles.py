@@ -27,6 +27,8 @@ from mckibben.solver.held import Held
 
 AGAIN = (96, 256)
 """Unknowns on which a last good state is sought afresh; the larger number where the smaller does not resolve it."""
+LONG = 5.0
+"""Seconds of the processor after which a call is timed once more: it may have been compiling."""
 NUMBERS = ("force", "length", "volume", "error_estimate", "residual", "coefficient_tail", "conserved_variation")
 
 
@@ -174,7 +176,8 @@ def run(sample: Sample, count: int, workers: int) -> None:
     write_lines(safely, [draw(k, sample) for k in range(count)], lines, workers, warm)
     lost = [row["case"] for _, row in sorted(read(lines).items()) if row["found"]["verdict"] != "stable"]
     write_lines(judged, lost, file_of(sample, "_judged"), workers)
-    write_lines(timed, lost, file_of(sample, "_timed"), workers)
+    slow = [row["case"] for _, row in sorted(read(lines).items()) if row["found"].get("processor", 0.0) > LONG]
+    write_lines(timed, slow, file_of(sample, "_timed"), workers)
 
 
 def main() -> None:

@@ -131,8 +131,8 @@ def _times(rows: list[Row]) -> list[str]:
 
 
 TIMES = """Seconds of the default call, two processes side by side on a busy machine; those of the processor leave out
-the waiting. Calls without a stable state are timed when they are made a second time, with everything compiled. Without
-a good state the call looks for the end of the branch; 5 s is asked for at 99%."""
+the waiting. What took more than 5 s was timed again with everything compiled. Without a good state the call looks for
+the end of the branch; 5 s is asked for at 99%."""
 
 
 def _bad(rows: list[Row]) -> list[str]:
