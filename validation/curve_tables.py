@@ -13,6 +13,8 @@ ROUNDING = 1e-9
 BOUNDS = {"state": 5.0, "curve": 10.0}
 """Seconds asked for at most, at 99%, of what fails."""
 
+WAYS = ("run", "sweep")
+
 Row = dict[str, Any]
 
 
@@ -47,7 +49,8 @@ def report(rows: list[Row]) -> list[str]:
     """The section of the page."""
     crashed = [row for row in rows if "crash" in row]
     rows = [row for row in rows if "crash" not in row]
-    lines = {way: [line for row in rows for line in compared(row, way)] for way in ("run", "sweep")}
+    lines = {way: [line for row in rows if way in row for line in compared(row, way)] for way in WAYS}
+    lines = {way: of for way, of in lines.items() if of}
     text = ["", *fill(SAID.format(count=len(rows), states=len(lines["run"]), crashed=len(crashed)), 120).splitlines()]
     for way, of in lines.items():
         text += table(
@@ -89,14 +92,17 @@ def _said(line: Row) -> list[Any]:
             f"{line['by solve']:.6g}", line["reason"].replace("|", "/")]  # fmt: skip
 
 
+def _fails(found: Row) -> bool:
+    return any(word not in GOOD for word in found["verdict"])
+
+
 def _times(rows: list[Row]) -> list[str]:
     """Times of curves and of states, whole and failing."""
-    fails = {way: [any(word not in GOOD for word in row[way]["verdict"]) for row in rows] for way in ("run", "sweep")}
     states = [state for row in rows for state in row["solve"]]
     bad = [state["verdict"] not in GOOD for state in states]
     groups = {
-        f"{word} by `{way}`": [row[way] for row, fail in zip(rows, fails[way], strict=True) if fail == failing]
-        for way in fails
+        f"{word} by `{way}`": [row[way] for row in rows if way in row and _fails(row[way]) == failing]
+        for way in WAYS
         for word, failing in (("curve", False), ("failing curve", True))
     }
     groups |= {

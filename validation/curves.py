@@ -1,8 +1,8 @@
 """Random curves: whether `mk.run` and `mk.sweep` reach and say of every state what `mk.solve` says of it alone.
 
-    python validation/curves.py [--count 80] [--workers 2]
+    python validation/curves.py [--count 80] [--swept 80] [--workers 2] [--report-only]
 
-Curves go line by line to out/curves.jsonl, the tables into validation/README.md.
+Curves go line by line to out/curves.jsonl and out/curves_swept.jsonl, the tables into validation/README.md.
 """
 
 import argparse
@@ -23,7 +23,7 @@ SEED = 20261125
 KINDS = ("isometric", "isobaric", "isotonic", "large isotonic", "free contraction")
 """Isometric and isotonic over the pressure, isobaric over the length. A large force lies up to twice as far beyond the
 ordinary ones as those lie apart."""
-LINES = OUT / "curves.jsonl"
+LINES, SWEPT = OUT / "curves.jsonl", OUT / "curves_swept.jsonl"
 LONG = 5.0
 """Seconds of the processor after which a call may have been compiling."""
 
@@ -73,25 +73,43 @@ def timed(call: Callable[[], Any]) -> tuple[Any, dict[str, float]]:
     return found, took
 
 
+NAMES = ("force", "length", "volume", "error_estimate")
+
+
 def one(case: Case) -> dict[str, Any]:
-    """A curve as `run`, `sweep` and `solve` give it."""
+    """A curve as `run` gives it, and its states as `solve` gives them."""
     muscle, test = muscle_of(case), test_of(case)
-    over = {"braid.fibres": [case["muscle"]["N"]]}
     curve, took = timed(lambda: mk.run(muscle, test))
-    data, sweep_took = timed(lambda: mk.sweep(muscle, test, over, workers=0))
-    words = [word.replace("_", " ") for word in data["verdict"].attrs["flag_meanings"].split()]
-    names = ("force", "length", "volume", "error_estimate")
-    columns = {"run": curve.column, "sweep": lambda name: data[name].values[0]}
-    ways = {way: {name: [float(x) for x in column(name)] for name in names} for way, column in columns.items()}
-    ways["run"] |= {"verdict": list(curve.verdict), "reason": [str(x) for x in curve.column("reason")]} | took
-    ways["sweep"] |= {"verdict": [words[int(x) + 1] for x in data["verdict"].values[0]]} | sweep_took
+    found = _numbers(curve.column) | took
+    found |= {"verdict": list(curve.verdict), "reason": [str(text) for text in curve.column("reason")]}
     alone = []
     for held in targets(case):
         state, seconds = timed(lambda held=held: mk.solve(muscle, **held))
-        alone.append({name: getattr(state, name) for name in names} | {
-            "verdict": str(state.verdict), "reason": state.reason, "cautions": len(state.cautions)} | seconds
-        )  # fmt: skip
-    return {"case": case, **ways, "solve": alone}
+        line = {name: getattr(state, name) for name in NAMES} | seconds
+        alone.append(line | {"verdict": str(state.verdict), "reason": state.reason})
+    return {"case": case, "run": found, "solve": alone}
+
+
+def swept(case: Case) -> dict[str, Any]:
+    """A curve as `sweep` gives it."""
+    over = {"braid.fibres": [case["muscle"]["N"]]}
+    data, took = timed(lambda: mk.sweep(muscle_of(case), test_of(case), over, workers=0))
+    words = [word.replace("_", " ") for word in data["verdict"].attrs["flag_meanings"].split()]
+    verdicts = [words[int(flag) + 1] for flag in data["verdict"].values[0]]
+    return {"case": case, "sweep": _numbers(lambda name: data[name].values[0]) | {"verdict": verdicts} | took}
+
+
+def _numbers(column: Callable[[str], Any]) -> dict[str, Any]:
+    return {name: [float(value) for value in column(name)] for name in NAMES}
+
+
+def done() -> list[dict[str, Any]]:
+    """Curves so far, by every way that was asked."""
+    rows, sweeps = read(LINES), read(SWEPT)
+    return [
+        row | {key: value for key, value in sweeps.get(k, {}).items() if key != "case"}
+        for k, row in sorted(rows.items())
+    ]
 
 
 def safely(case: Case) -> dict[str, Any]:
@@ -114,11 +132,16 @@ def warm() -> None:
 def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("--count", type=int, default=80)
+    parser.add_argument("--swept", type=int, help="how many of them by sweep, too; all by default")
     parser.add_argument("--workers", type=int, default=2)
+    parser.add_argument("--report-only", action="store_true")
     asked = parser.parse_args()
     OUT.mkdir(exist_ok=True)
-    write_lines(safely, [draw(k) for k in range(asked.count)], LINES, asked.workers, warm)
-    put("## Curves", report([row for _, row in sorted(read(LINES).items())]))
+    if not asked.report_only:
+        cases = [draw(k) for k in range(asked.count)]
+        write_lines(safely, cases, LINES, asked.workers, warm)
+        write_lines(swept, cases[: asked.swept], SWEPT, 1)  # most of its time is compiling, once
+    put("## Curves", report(done()))
 
 
 if __name__ == "__main__":

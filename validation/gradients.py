@@ -3,14 +3,14 @@
     python validation/gradients.py [--count 200] [--workers 2] [--report-only]
 
 Derivatives are those of the default call, differences those of calls with a tolerance of 1e-10. The slopes go to
-out/gradients.json, the tables into validation/README.md.
+out/gradients.jsonl as they come, the tables into validation/README.md; a run that was cut short goes on.
 """
 
 import argparse
 import itertools
 import json
 import multiprocessing
-from concurrent.futures import ProcessPoolExecutor
+from concurrent.futures import ProcessPoolExecutor, as_completed
 from functools import partial
 from textwrap import fill
 from typing import Any
@@ -27,7 +27,7 @@ from mckibben import spec
 
 SEED = 20261126
 KINDS = ("isometric", "isobaric", "isotonic", "free contraction", "blocked force", "volume held", "sealed gas")
-ROWS = environment.OUT / "gradients.json"
+ROWS = environment.OUT / "gradients.jsonl"
 STEP = 1e-3
 """Largest relative step of a number, and largest relative change of a result in a step."""
 FINE = 1e-10
@@ -231,13 +231,25 @@ def main() -> None:
     parser.add_argument("--report-only", action="store_true")
     asked = parser.parse_args()
     if not asked.report_only:
-        environment.OUT.mkdir(exist_ok=True)
-        alike = 2 * len(KINDS)
-        groups = [list(range(first, asked.count, alike)) for first in range(alike)]
-        with ProcessPoolExecutor(asked.workers, multiprocessing.get_context("spawn")) as pool:
-            rows = [row for rows in pool.map(group, groups) for row in rows]
-        ROWS.write_text(json.dumps(rows), encoding="utf-8")
-    put("## Gradients", report(json.loads(ROWS.read_text(encoding="utf-8"))))
+        run(asked.count, asked.workers)
+    rows = [json.loads(line) for line in ROWS.read_text(encoding="utf-8").splitlines()]
+    put("## Gradients", report(sorted(rows, key=lambda row: int(row["id"]))))
+
+
+def run(count: int, workers: int) -> None:
+    """Muscles of one kind of test and ends are measured in one process, since they share what is compiled."""
+    environment.OUT.mkdir(exist_ok=True)
+    given = ROWS.read_text(encoding="utf-8").splitlines() if ROWS.exists() else []
+    known = {json.loads(line)["id"] for line in given}
+    alike = 2 * len(KINDS)
+    groups = [[k for k in range(first, count, alike) if k not in known] for first in range(alike)]
+    with (
+        ProcessPoolExecutor(workers, multiprocessing.get_context("spawn")) as pool,
+        ROWS.open("a", encoding="utf-8") as lines,
+    ):
+        for job in as_completed([pool.submit(group, ids) for ids in groups if ids]):
+            lines.writelines(json.dumps(row) + "\n" for row in job.result())
+            lines.flush()
 
 
 if __name__ == "__main__":
