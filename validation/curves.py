@@ -120,15 +120,6 @@ def safely(case: Case) -> dict[str, Any]:
         return {"case": case, "crash": repr(error)}
 
 
-def warm() -> None:
-    """Compile what curves need, so that the times are those of solving."""
-    from random_muscles import warm as warm_states
-
-    warm_states()
-    for k in range(2 * len(KINDS)):  # one of each kind and ends, other than those that count
-        safely(draw(10_000 + k))
-
-
 def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("--count", type=int, default=80)
@@ -139,7 +130,7 @@ def main() -> None:
     OUT.mkdir(exist_ok=True)
     if not asked.report_only:
         cases = [draw(k) for k in range(asked.count)]
-        write_lines(safely, cases, LINES, asked.workers, warm)
+        write_lines(safely, cases, LINES, asked.workers)
         write_lines(swept, cases[: asked.swept], SWEPT, 1)  # most of its time is compiling, once
     put("## Curves", report(done()))
 

@@ -108,7 +108,20 @@ def _trust(rows: list[Row]) -> list[str]:
             sum(one["difference"] < 1e-6 for one in last),
         ],
     ]
-    return ["", "### Trust", *table(["check", "result"], lines)]
+    return ["", "### Trust", *table(["check", "result"], lines), *_not_again(rows)]
+
+
+def _not_again(rows: list[Row]) -> list[str]:
+    """The last good states that a fresh search does not find to 1e-6."""
+    lines = []
+    for row in rows:
+        last = row["found"].get("last_good")
+        if last is not None and not last["difference"] < 1e-6:
+            found = [f"{last[name]:.6g}" for name in ("length", "force")]
+            sizes = [f"{last[name]:.1e}" for name in ("error_estimate", "difference")]
+            lines.append([row["case"]["id"], *found, *sizes, last["again"]["why"]])
+    head = ["last good state of", "length (m)", "force (N)", "error estimate", "difference", "a fresh search finds"]
+    return table(head, lines) if lines else []
 
 
 def _sound(last: dict[str, Any]) -> bool:
