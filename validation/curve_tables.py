@@ -51,7 +51,13 @@ def report(rows: list[Row]) -> list[str]:
     rows = [row for row in rows if "crash" not in row]
     lines = {way: [line for row in rows if way in row for line in compared(row, way)] for way in WAYS}
     lines = {way: of for way, of in lines.items() if of}
-    text = ["", *fill(SAID.format(count=len(rows), states=len(lines["run"]), crashed=len(crashed)), 120).splitlines()]
+    swept = sum("sweep" in row for row in rows)
+    text = [
+        "",
+        *fill(
+            SAID.format(count=len(rows), states=len(lines["run"]), crashed=len(crashed), swept=swept), 120
+        ).splitlines(),
+    ]
     for way, of in lines.items():
         text += table(
             [f"by `{way}`", *HEAD], [_counts(kind, of) for kind in [*dict.fromkeys(r["kind"] for r in of), "all"]]
@@ -64,8 +70,8 @@ def report(rows: list[Row]) -> list[str]:
 
 SAID = """Written by `python validation/curves.py`. {count} random curves ({states} states in all; {crashed} crashes) of
 the muscles of `validation/sample.py`: lengths of 0.5 H0 to 0.99 of full extension, forces ordinary and up to twice as
-far beyond that range as it is wide, of both signs. Each is given to `mk.run` and to `mk.sweep`, and every state of it
-alone to `mk.solve`. Numbers differ where the force (over |F| + pi R0^2 P) or the length does by more than the two error
+far beyond that range as it is wide, of both signs. Each is given to `mk.run`, {swept} of them to `mk.sweep`, too, and
+every state alone to `mk.solve`. Numbers differ where the force (over |F| + pi R0^2 P) or the length does by more than the two error
 estimates together."""
 
 TIMES = """Seconds of the calls with everything compiled (what took more than 5 s was made twice), two processes side by
@@ -103,11 +109,12 @@ def _times(rows: list[Row]) -> list[str]:
     groups = {
         f"{word} by `{way}`": [row[way] for row in rows if way in row and _fails(row[way]) == failing]
         for way in WAYS
-        for word, failing in (("curve", False), ("failing curve", True))
+        if any(way in row for row in rows)
+        for word, failing in (("complete curve", False), ("failing curve", True))
     }
     groups |= {
         f"{word} by `solve`": [state for state, fail in zip(states, bad, strict=True) if fail == failing]
-        for word, failing in (("state", False), ("failing state", True))
+        for word, failing in (("good state", False), ("failing state", True))
     }
     lines = []
     for name, of in groups.items():
