@@ -71,8 +71,8 @@ def report(rows: list[Row]) -> list[str]:
 SAID = """Written by `python validation/curves.py`. {count} random curves ({states} states in all; {crashed} crashes) of
 the muscles of `validation/sample.py`: lengths of 0.5 H0 to 0.99 of full extension, forces ordinary and up to twice as
 far beyond that range as it is wide, of both signs. Each is given to `mk.run`, {swept} of them to `mk.sweep`, too, and
-every state alone to `mk.solve`. Numbers differ where the force (over |F| + pi R0^2 P) or the length does by more than the two error
-estimates together."""
+every state alone to `mk.solve`. Numbers differ where the force (over |F| + pi R0^2 P) or the length does by more than
+the two error estimates together."""
 
 TIMES = """Seconds of the calls with everything compiled (what took more than 5 s was made twice), two processes side by
 side on a busy machine; processor seconds are those without the waiting. A curve fails where one of its states has no
