@@ -1,8 +1,9 @@
 """The error estimate against the true error, on random states at every size, and on stretched ones by the call.
 
-    python validation/error_estimate.py [--count 120] [--stretched 180] [--report-only]
+    python validation/error_estimate.py [--count 120] [--stretched 180] [--workers 2]
+        [--report-only]
 
-The rows go to out/error_estimate.json and out/error_estimate_stretched.json, the tables into validation/README.md.
+The rows go to out/error_estimate.json and out/error_estimate_stretched.jsonl, the tables into validation/README.md.
 """
 
 import argparse
@@ -15,8 +16,8 @@ import numpy as np
 from environment import OUT
 from judges import placement
 from pictures import draw_errors
-from random_muscles import done
-from sample import FIRST, SECOND, draw, muscle_of
+from random_muscles import done, read, write_lines
+from sample import FIRST, SECOND, Case, draw, muscle_of
 from sections import README, put
 from summary import table
 
@@ -27,7 +28,7 @@ from mckibben.solver.equilibrium import Equilibrium
 from mckibben.solver.find import find, refine
 from mckibben.solver.held import Held
 
-ROWS, STRETCHED = OUT / "error_estimate.json", OUT / "error_estimate_stretched.json"
+ROWS, STRETCHED = OUT / "error_estimate.json", OUT / "error_estimate_stretched.jsonl"
 TOLERANCES, FINE = (1e-4, 1e-6), 1e-10
 """Of the calls on stretched states, and of the call that gives the true force."""
 FLOOR = 1e-11
@@ -69,26 +70,31 @@ def measure(row: dict[str, Any]) -> list[dict[str, Any]]:
     return lines
 
 
-def stretched(count: int) -> list[dict[str, Any]]:
-    """The force at lengths close to full extension, by calls of several tolerances: the first of the second sample."""
-    cases = (draw(k, SECOND) for k in itertools.count())
+def stretched(case: Case) -> dict[str, Any]:
+    """The force at a length close to full extension, by calls of several tolerances."""
+    fine = mk.solve(muscle_of(case), **case["held"], tolerance=FINE)
+    natural = np.pi * case["muscle"]["R0"] ** 2 * case["held"]["pressure"] + abs(fine.force)
+    gap = 1.0 - case["held"]["length"] / case["longest"]
     lines = []
-    for case in itertools.islice((case for case in cases if case["kind"] == "stretched"), count):
-        fine = mk.solve(muscle_of(case), **case["held"], tolerance=FINE)
-        natural = np.pi * case["muscle"]["R0"] ** 2 * case["held"]["pressure"] + abs(fine.force)
-        gap = 1.0 - case["held"]["length"] / case["longest"]
-        for tolerance in TOLERANCES:
-            state = mk.solve(muscle_of(case), **case["held"], tolerance=tolerance)
-            line = {"id": case["id"], "gap": gap, "tolerance": tolerance, "estimate": state.error_estimate}
-            line |= {"natural": abs(state.force - fine.force) / natural, "fine estimate": fine.error_estimate}
-            line["converged"] = str(state.verdict) == str(fine.verdict) == "stable"
-            lines.append(line)
-    return lines
+    for tolerance in TOLERANCES:
+        state = mk.solve(muscle_of(case), **case["held"], tolerance=tolerance)
+        line = {"id": case["id"], "gap": gap, "tolerance": tolerance, "estimate": state.error_estimate}
+        line |= {"natural": abs(state.force - fine.force) / natural, "fine estimate": fine.error_estimate}
+        line["converged"] = str(state.verdict) == str(fine.verdict) == "stable"
+        lines.append(line)
+    return {"case": case, "lines": lines}
+
+
+def near_extension(count: int) -> list[Case]:
+    """The first stretched cases of the second sample, and of what it would go on with."""
+    cases = (draw(k, SECOND) for k in itertools.count())
+    return list(itertools.islice((case for case in cases if case["kind"] == "stretched"), count))
 
 
 def section() -> list[str]:
     """The section of the page."""
-    rows, near = (json.loads(file.read_text(encoding="utf-8")) for file in (ROWS, STRETCHED))
+    rows = json.loads(ROWS.read_text(encoding="utf-8"))
+    near = [line for row in read(STRETCHED).values() for line in row["lines"]]
     draw_errors(rows, README.parent / "error_estimate.png")
     rows = [row for row in rows if row["converged"]]
     groups = {f"{size} unknowns": [row for row in rows if row["size"] == size] for size in SIZES}
@@ -143,11 +149,12 @@ def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("--count", type=int, default=120)
     parser.add_argument("--stretched", type=int, default=180)
+    parser.add_argument("--workers", type=int, default=2)
     parser.add_argument("--report-only", action="store_true")
     asked = parser.parse_args()
     if not asked.report_only:
         ROWS.write_text(json.dumps([line for row in chosen(asked.count) for line in measure(row)]), encoding="utf-8")
-        STRETCHED.write_text(json.dumps(stretched(asked.stretched)), encoding="utf-8")
+        write_lines(stretched, near_extension(asked.stretched), STRETCHED, asked.workers)
     put("## The error estimate", section())
 
 
