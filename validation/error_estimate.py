@@ -100,6 +100,8 @@ def section() -> list[str]:
     groups = {f"{size} unknowns": [row for row in rows if row["size"] == size] for size in SIZES}
     groups |= {"the size that the default call ends with": _ended(rows), "every size": rows}
     text = ["", SAID, *_table("states on", groups), "", "![estimate against true error](error_estimate.png)"]
+    if not near:
+        return text
     lost = len({row["id"] for row in near if not row["converged"]})
     near = [row for row in near if row["converged"]]
     groups = {

@@ -146,7 +146,7 @@ def done(sample: Sample) -> dict[int, dict[str, Any]]:
     for k in rows.keys() & judges.keys():
         rows[k]["judges"] = judges[k]["judges"]
     for k in rows.keys() & times.keys():
-        rows[k]["found"] |= times[k]["times"]
+        rows[k]["found"] |= times[k]["times"] | {"again": True}
     return rows
 
 
