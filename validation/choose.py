@@ -13,7 +13,7 @@ from typing import Any
 from environment import ROOT
 from judges import placement
 from random_muscles import done
-from sample import muscle_of
+from sample import FIRST, muscle_of
 from summary import missed
 
 from mckibben.solver.bench import Bench
@@ -69,7 +69,7 @@ def entry(row: dict[str, Any]) -> dict[str, Any]:
 
 
 def main() -> None:
-    entries = [entry(row) for row in chosen([row for _, row in sorted(done().items())])]
+    entries = [entry(row) for row in chosen([row for _, row in sorted(done(FIRST).items())])]
     lines = ",\n  ".join(json.dumps(one) for one in entries)
     note = "Written by validation/choose.py: random muscles and targets, SI units, states on 144 unknowns."
     FILE.write_text(f'{{"note": "{note}",\n "targets": [\n  {lines}\n]}}\n', encoding="utf-8")

@@ -61,7 +61,7 @@ def draw_map(rows: list[dict[str, Any]], path: Path) -> None:
             }  # fmt: skip
             left.scatter(x, h, label=f"{verdict}, {control} ({len(x)})", **look)
             right.scatter(x, np.minimum(index, LIMIT), **look)
-    left.set(xscale="log", ylabel="h / h_max", xlabel="H0 / width of the end layer")
+    left.set(xscale="log", ylabel="Length of the cylinder / h_max", xlabel="H0 / width of the end layer")
     right.set(xscale="log", ylabel="Wrinkling index", xlabel="H0 / width of the end layer")
     right.set_yscale("symlog", linthresh=1.0)
     right.axhline(-1.0, color=GREY, linewidth=0.8, linestyle="--")

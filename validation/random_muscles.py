@@ -1,9 +1,9 @@
-"""The default call on 1,000 random muscles: how often it reaches what can be reached, and whether it ever misleads.
+"""The default call on random muscles: how often it reaches what can be reached, and whether it ever misleads.
 
-    python validation/random_muscles.py [--count 1000] [--workers 2] [--report-only]
+    python validation/random_muscles.py [--sample first] [--count 1000] [--workers 2] [--report-only]
 
-Results go line by line to out/random_muscles.jsonl; a run that was cut short goes on where it stopped. The report is
-validation/README.md and validation/random_muscles.png.
+Results go line by line to out/random_muscles_first.jsonl; a run that was cut short goes on where it stopped. The report
+on all samples is in validation/README.md, with a picture of each.
 """
 
 import argparse
@@ -17,7 +17,7 @@ from typing import Any
 
 from environment import OUT
 from judges import judge_target, placement, worth_of
-from sample import Case, draw, muscle_of
+from sample import SAMPLES, Case, Sample, draw, muscle_of
 
 import mckibben as mk
 from mckibben.experiments.answer import UNSTABLE
@@ -25,9 +25,10 @@ from mckibben.solver.bench import Bench
 from mckibben.solver.find import find
 from mckibben.solver.held import Held
 
-LINES, JUDGED = OUT / "random_muscles.jsonl", OUT / "random_muscles_judged.jsonl"
 AGAIN = (96, 256)
 """Unknowns on which a last good state is sought afresh; the larger number where the smaller does not resolve it."""
+LONG = 5.0
+"""Seconds of the processor after which a call is timed once more: it may have been compiling."""
 NUMBERS = ("force", "length", "volume", "error_estimate", "residual", "coefficient_tail", "conserved_variation")
 
 
@@ -46,9 +47,9 @@ def warm() -> None:
 def one(case: Case) -> dict[str, Any]:
     """The default call on one case."""
     muscle, bench, held = muscle_of(case), Bench.of(muscle_of(case)), Held.of(**case["held"])
-    start = time.perf_counter()
+    start, worked = time.perf_counter(), time.process_time()
     state = mk.solve(muscle, **case["held"])
-    found: dict[str, Any] = {"seconds": time.perf_counter() - start}
+    found: dict[str, Any] = {"seconds": time.perf_counter() - start, "processor": time.process_time() - worked}
     found |= {"verdict": str(state.verdict), "reason": state.reason, "shape": str(state.data["shape"].values)}
     found |= {name: float(state.data[name].values) for name in NUMBERS}
     found["miss"] = max(abs(getattr(state, k) - v) / max(abs(v), 1.0 if k == "force" else 0.0) for k, v in pairs(held))
@@ -65,6 +66,15 @@ def one(case: Case) -> dict[str, Any]:
 def judged(case: Case) -> dict[str, Any]:
     """What the other methods make of a case."""
     return {"case": case, "judges": judge_target(Bench.of(muscle_of(case)), Held.of(**case["held"]), case["id"])}
+
+
+def timed(case: Case) -> dict[str, Any]:
+    """Times of the default call on a case once more, when all that it needs is compiled."""
+    muscle = muscle_of(case)
+    mk.solve(muscle, **case["held"])
+    start, worked = time.perf_counter(), time.process_time()
+    mk.solve(muscle, **case["held"])
+    return {"case": case, "times": {"seconds": time.perf_counter() - start, "processor": time.process_time() - worked}}
 
 
 def pairs(held: Held) -> list[tuple[str, float]]:
@@ -125,11 +135,18 @@ def read(file: Path) -> dict[int, dict[str, Any]]:
     return {row["case"]["id"]: row for row in rows}
 
 
-def done() -> dict[int, dict[str, Any]]:
-    """Results so far, with the judges' word where they were asked."""
-    rows, judges = read(LINES), read(JUDGED)
+def file_of(sample: Sample, what: str = "") -> Path:
+    """Where the results of a sample are: of the default call, "_judged" or "_timed"."""
+    return OUT / f"random_muscles_{sample.name}{what}.jsonl"
+
+
+def done(sample: Sample) -> dict[int, dict[str, Any]]:
+    """Results so far, with the judges' word and with the times once all was compiled where those were asked."""
+    rows, judges, times = (read(file_of(sample, what)) for what in ("", "_judged", "_timed"))
     for k in rows.keys() & judges.keys():
         rows[k]["judges"] = judges[k]["judges"]
+    for k in rows.keys() & times.keys():
+        rows[k]["found"] |= times[k]["times"] | {"again": True}
     return rows
 
 
@@ -152,25 +169,30 @@ def write_lines(
             lines.flush()
 
 
-def run(count: int, workers: int) -> None:
+def run(sample: Sample, count: int, workers: int) -> None:
     """The default call on everything; then the judges wherever it gave no stable state."""
     OUT.mkdir(exist_ok=True)
-    write_lines(safely, [draw(k) for k in range(count)], LINES, workers, warm)
-    lost = [row["case"] for _, row in sorted(read(LINES).items()) if row["found"]["verdict"] != "stable"]
-    write_lines(judged, lost, JUDGED, workers)
+    lines = file_of(sample)
+    write_lines(safely, [draw(k, sample) for k in range(count)], lines, workers, warm)
+    lost = [row["case"] for _, row in sorted(read(lines).items()) if row["found"]["verdict"] != "stable"]
+    write_lines(judged, lost, file_of(sample, "_judged"), workers)
+    slow = [row["case"] for _, row in sorted(read(lines).items()) if row["found"].get("processor", 0.0) > LONG]
+    write_lines(timed, slow, file_of(sample, "_timed"), workers)
 
 
 def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
-    parser.add_argument("--count", type=int, default=1000)
+    parser.add_argument("--sample", choices=[sample.name for sample in SAMPLES], default=SAMPLES[0].name)
+    parser.add_argument("--count", type=int, help="as many as the sample has by default")
     parser.add_argument("--workers", type=int, default=2)
     parser.add_argument("--report-only", action="store_true")
     asked = parser.parse_args()
+    sample = next(sample for sample in SAMPLES if sample.name == asked.sample)
     if not asked.report_only:
-        run(asked.count, asked.workers)
+        run(sample, asked.count or sample.count, asked.workers)
     from summary import write
 
-    write([row for k, row in sorted(done().items()) if k < asked.count])
+    write({sample: [row for _, row in sorted(done(sample).items())] for sample in SAMPLES})
 
 
 if __name__ == "__main__":

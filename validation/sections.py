@@ -3,7 +3,7 @@
 from environment import ROOT
 
 README = ROOT / "validation" / "README.md"
-TITLES = ("## Damaged files", "## Wrong input")
+TITLES = ("## The error estimate", "## Curves", "## Gradients", "## Damaged files", "## Wrong input")
 """In this order, at the end."""
 
 
