@@ -2,7 +2,8 @@
 
 A kernel is read from the user's folder of compiled functions, or compiled and written to it. Inside `keeping(folder)`,
 as the command line has it, kernels are compiled with the least optimisation: a single curve takes some milliseconds
-more, and the first one several seconds less.
+more, and the first one several seconds less. A kernel that a search calls `often` is compiled for speed even there: a
+target without a state then takes a third of the time.
 """
 
 import functools
@@ -21,7 +22,7 @@ from mckibben.compiled import folder as folders
 from mckibben.compiled import kept
 from mckibben.compiled.describe import UnkeepableError, describe, describe_tree
 from mckibben.compiled.executable import Executable, compiled, loaded, tracing
-from mckibben.compiled.options import QUICK, Options, usual
+from mckibben.compiled.options import OPTIONS, QUICK, Options, usual
 
 __all__ = ["QUICK", "Kernel", "keeping", "kernel"]
 
@@ -32,6 +33,8 @@ class _Place(NamedTuple):
     folder: Path | None
     options: tuple[tuple[str, Any], ...]
 
+
+_FOR_SPEED = tuple(OPTIONS.items())
 
 _place: _Place | None = None
 
@@ -81,8 +84,9 @@ class _Kind(NamedTuple):
 class Kernel:
     """A function compiled for each set of static arguments, shapes and types; its other arguments are pytrees."""
 
-    def __init__(self, function: Callable[..., Any], static: Sequence[int], named: Sequence[str]) -> None:
+    def __init__(self, function: Callable[..., Any], static: Sequence[int], named: Sequence[str], often: bool) -> None:
         functools.update_wrapper(self, function)
+        self._often = often
         order = list(inspect.signature(function).parameters)
         self._function, self._positions = function, frozenset(static)
         self._names = frozenset([*named, *(order[i] for i in static)])
@@ -100,7 +104,7 @@ class Kernel:
         leaves, tree = jax.tree.flatten(arrays)
         if tracing.now or self._traced(leaves):
             return self._inside(*args, **named)
-        kind = _Kind(_place or _usual(), static, tree, tuple([_form(leaf) for leaf in leaves]))
+        kind = _Kind(self._where(), static, tree, tuple([_form(leaf) for leaf in leaves]))
         found = self._known.get(kind) or self._find(kind)
         try:
             return found(leaves)
@@ -113,7 +117,7 @@ class Kernel:
         """Have the kernel read or compiled in the background; arrays count by shape alone."""
         static, arrays = self._split(args, named)
         leaves, tree = jax.tree.flatten(arrays)
-        kind = _Kind(_place or _usual(), static, tree, tuple(map(_form, leaves)))
+        kind = _Kind(self._where(), static, tree, tuple(map(_form, leaves)))
         if kind not in self._known:
             _ahead().submit(self._find, kind)
 
@@ -130,6 +134,11 @@ class Kernel:
 
     def _cache_size(self) -> int:
         return self._inside._cache_size() + len(self._known)
+
+    def _where(self) -> _Place:
+        """Where it is kept now, and how it is compiled."""
+        place = _place or _usual()
+        return place._replace(options=_FOR_SPEED) if self._often else place
 
     def _split(self, args: tuple[Any, ...], named: dict[str, Any]) -> tuple[tuple[Any, ...], Any]:
         """Static arguments with their positions or names, and the others."""
@@ -226,11 +235,16 @@ class Kernel:
 
 
 def kernel(
-    function: Callable[..., Any], *, static_argnums: int | Sequence[int] = 0, static_argnames: Sequence[str] = ()
+    function: Callable[..., Any],
+    *,
+    static_argnums: int | Sequence[int] = 0,
+    static_argnames: Sequence[str] = (),
+    often: bool = False,
 ) -> Kernel:
     """Compile a function: its static arguments are hashable, the others are pytrees of arrays and numbers.
 
-    With its first argument static it is used as `@kernel`, otherwise as `@partial(kernel, static_argnums=(0, 1))`.
+    With its first argument static it is used as `@kernel`, otherwise as `@partial(kernel, static_argnums=(0, 1))`. One
+    that is called `often` is always compiled for speed.
     """
     static = (static_argnums,) if isinstance(static_argnums, int) else tuple(static_argnums)
-    return Kernel(function, static, tuple(static_argnames))
+    return Kernel(function, static, tuple(static_argnames), often)

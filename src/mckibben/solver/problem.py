@@ -1,5 +1,6 @@
 """One muscle on one discretisation, and what the robust search asks of it."""
 
+from functools import partial
 from typing import Any, NamedTuple
 
 import attrs
@@ -34,7 +35,7 @@ class Assembly(NamedTuple):
     tangents: Float[Array, "4 m m"]
 
 
-@kernel
+@partial(kernel, often=True)
 def evaluate(basis: Basis, p: Parameters, b: Number, u: Float[Array, " m"]) -> Assembly:
     """Each quantity as a Lagrangian of its own: the energy alone, then with one load of -1 each and no energy."""
     on = place(basis, p, b)
