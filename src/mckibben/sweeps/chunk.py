@@ -77,7 +77,7 @@ def _singly(columns: Columns, k: int, design: Design, tolerance: float) -> None:
             result = run(*design, tolerance=tolerance)
     except SpecError as error:
         refuse(columns, k, Status.WRONG_INPUT, str(error))
-    except Exception as error:  # whatever it is, it is the affair of this design alone
+    except Exception as error:  # one design never spoils another
         refuse(columns, k, Status.FAILED, f"{type(error).__name__}: {error}")
     else:
         if result.status == INTERRUPTED:

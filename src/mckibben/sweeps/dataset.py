@@ -79,7 +79,7 @@ def arranged(data: xr.Dataset) -> xr.Dataset:
 
 
 class Memory:
-    """A sweep kept in memory, with the same face as a store."""
+    """A sweep kept in memory, read and written like a store."""
 
     def __init__(self, plan: Plan) -> None:
         self.plan = plan

@@ -75,7 +75,7 @@ def _client(workers: int | None, scheduler: str | None) -> Iterator[Client]:
 
 
 def _reach(scheduler: str) -> None:
-    """Try the address first: a Client that does not come to be leaves complaints behind."""
+    """Try the address first: a Client that finds no scheduler goes on logging errors after it has failed."""
     from distributed.comm.core import connect
 
     async def attempt() -> None:
