@@ -25,7 +25,7 @@ def test_it_is_the_minimiser(spectrum: tuple[float, ...], radius: float) -> None
     assert length <= radius * (1.0 + 1e-3)
     assert shift >= -1e-12 * size
     assert spectrum[0] + shift >= -1e-12 * size
-    np.testing.assert_allclose(hessian @ step + shift * step, -gradient, atol=1e-9 * size * length)
+    np.testing.assert_allclose(hessian @ step + shift * step, -gradient, rtol=0.0, atol=1e-14 * size * length)
     if length < radius * (1.0 - 2e-3):
         assert abs(shift) < 1e-9 * size
 
