@@ -8,13 +8,14 @@ import threading
 import time
 from collections.abc import Iterator
 from pathlib import Path
+from typing import Any
 
 import dask
 import numpy as np
 import psutil
 import pytest
 import xarray as xr
-from distributed import LocalCluster
+from distributed import Client, LocalCluster
 
 import mckibben as mk
 from mckibben.sweeps.worker import THREADS
@@ -70,7 +71,18 @@ def test_workers_do_not_change_bits_even_when_they_are_killed(cluster: LocalClus
     assert len(told) == 6
 
 
-def test_a_chunk_that_kills_its_workers_is_given_up_alone(cluster: LocalCluster) -> None:
+def test_a_chunk_that_kills_its_workers_is_given_up_alone(
+    cluster: LocalCluster, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    sent: list[str] = []
+    submit = Client.submit
+
+    def noted(client: Client, *args: Any, key: str, **kwargs: Any) -> Any:
+        sent.append(key)
+        return submit(client, *args, key=key, **kwargs)
+
+    monkeypatch.setattr(Client, "submit", noted)
+
     def deadly(l1: object, l2: object, l3: object, c: object) -> None:
         import os
         import signal
@@ -84,6 +96,8 @@ def test_a_chunk_that_kills_its_workers_is_given_up_alone(cluster: LocalCluster)
     assert data.status.values.tolist() == [1, 3, 1]
     assert data.reason.values.tolist()[1].startswith("its worker process died every time it was solved")
     assert data.verdict.values.tolist() == [[3] * 3, [-1] * 3, [3] * 3]
+    # each try is a task of its own: a scheduler answers a key that it knows with what came of it before
+    assert len(sent) == len(set(sent)) > len(laws)
 
 
 def test_a_lost_scheduler_is_said() -> None:

@@ -14,6 +14,7 @@ import sys
 from collections import deque
 from collections.abc import Callable, Iterator
 from contextlib import ExitStack, contextmanager
+from itertools import count
 from typing import TYPE_CHECKING, Any
 from uuid import uuid4
 
@@ -121,15 +122,15 @@ def _flow(client: Client, plan: Plan, missing: list[int], keep: Callable[[int, C
 
     base = cloudpickle.dumps((plan.muscle, plan.test))
     settings = (_environment(), versions())
-    name, coming = uuid4().hex[:8], as_completed(loop=client.loop)
+    name, tries, coming = uuid4().hex[:8], count(), as_completed(loop=client.loop)
     under_way: dict[Future[Columns], int] = {}
     waiting, apart = deque(missing), deque[int]()
 
     def send(index: int) -> None:
         piece = plan.piece(index)
         rest = (piece.fields, piece.rows, piece.steps, piece.tolerance)
-        # always a new key: a scheduler that others use too may remember an old one
-        future = client.submit(work, base, rest, *settings, key=f"sweep-{name}-{index}-{len(apart)}", pure=False)
+        # a new key for each try: a scheduler answers a key that it knows with what came of it before
+        future = client.submit(work, base, rest, *settings, key=f"sweep-{name}-{index}-{next(tries)}", pure=False)
         under_way[future] = index
         coming.add(future)
 
