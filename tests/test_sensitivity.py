@@ -10,8 +10,11 @@ from muscles import MAGIC, seeded
 
 import mckibben as mk
 from mckibben import spec
+from mckibben.discretise.bspline import Spline
 from mckibben.discretise.fields import place
-from mckibben.measure.read import peak, read
+from mckibben.discretise.spectral import Line
+from mckibben.measure.peak import peak
+from mckibben.measure.read import read
 from mckibben.model.cylinder import cylinder_angle, cylinder_force
 from mckibben.model.parameters import parameters
 from mckibben.results.variables import OBSERVED
@@ -182,19 +185,29 @@ def test_net_of_threads_in_a_long_muscle() -> None:
     assert shares["test.pressure"] == pytest.approx(1.0, rel=1e-3)
 
 
-def test_peak_between_the_nodes() -> None:
-    x = np.linspace(-1.0, 1.0, 129)
+def test_peak_between_the_points() -> None:
+    half, whole = Line(64), Line(64, modes="all")
+    inner, over = half.operators().x, whole.operators().x
 
     def hill(place: Any) -> Any:
-        return peak(jnp.exp(-40.0 * (jnp.abs(x) - place) ** 2))
+        return peak(jnp.exp(-40.0 * (inner + place) ** 2), half.harmonics())
 
-    for top in (0.3, 0.501, 0.5 + 0.5 / 64):
+    for top in (0.3, 0.501, 0.5 + 0.5 / 64, 0.999):
         value, slope = jax.value_and_grad(lambda at: (1.0 + at) * hill(at))(top)
-        assert float(value) == pytest.approx(1.0 + top, abs=2e-8)
-        assert float(slope) == pytest.approx(1.0, abs=1e-6)
-    end = jax.value_and_grad(lambda a: peak(jnp.exp(a * jnp.abs(x))))(0.7)  # at the fitting
+        assert float(value) == pytest.approx(1.0 + top, abs=1e-11)
+        assert float(slope) == pytest.approx(1.0, abs=1e-10)
+    place = jax.grad(jax.grad(lambda at: peak(-((over - at) ** 2) + at * over, whole.harmonics())))(0.2)
+    assert float(place) == pytest.approx(2.5, abs=1e-9)  # of the peak 5 at^2/4, at 3 at/2
+    end = jax.value_and_grad(lambda a: peak(jnp.exp(-a * inner), half.harmonics()))(0.7)  # at the fitting
     np.testing.assert_allclose(np.array(end), np.exp(0.7), rtol=1e-12)
-    middle = jax.value_and_grad(lambda a: peak(a - x**2))(2.0)
+    middle = jax.value_and_grad(lambda a: peak(a - inner**2, half.harmonics()))(2.0)
     np.testing.assert_allclose(np.array(middle), [2.0, 1.0], rtol=1e-12)
-    level = jax.value_and_grad(lambda a: peak(a + 0.0 * x))(3.0)
+    level = jax.value_and_grad(lambda a: peak(a + 0.0 * over, whole.harmonics()))(3.0)
     np.testing.assert_allclose(np.array(level), [3.0, 1.0], rtol=1e-12)
+
+
+def test_peak_of_splines() -> None:
+    spline = Spline()
+    x = spline.operators().x
+    found = jax.value_and_grad(lambda a: peak(jnp.exp(-10.0 * (x - a) ** 2) * (1.0 + a), spline.harmonics()))(0.333)
+    np.testing.assert_allclose(np.array(found), [1.333, 1.0], rtol=1e-4)

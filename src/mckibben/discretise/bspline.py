@@ -13,7 +13,7 @@ import numpy as np
 from numpy.polynomial import legendre
 
 from mckibben.compiled.arrays import Array
-from mckibben.discretise.fields import Floats, Form, Operators, Sampling, Variables
+from mckibben.discretise.fields import Floats, Form, Operators, Sampling, Variables, cosines
 from mckibben.model.angle import radians, tan
 from mckibben.model.parameters import Number, Parameters, functions
 from mckibben.model.point import Point
@@ -97,6 +97,10 @@ class Spline:
         """`count` points uniform over the full length."""
         return np.linspace(0.0, 1.0, count)
 
+    def harmonics(self) -> Floats:
+        """From a field at the quadrature points to c_k of sum c_k cos(k t), t = 0 at the last of x."""
+        return _harmonics(self)
+
     def coordinate(self, x: Any, p: Parameters, b: Number) -> Any:
         """Material coordinate v [m] of x; b is not used: the paper's mesh is uniform."""
         return x * p.H0
@@ -145,6 +149,15 @@ def _integral(spline: Spline, x: Floats) -> Floats:
     at = _operators(spline).x
     antiderivative = CubicSpline(at, np.eye(len(at))).antiderivative()
     return np.asarray(antiderivative(x) - antiderivative(0.0))
+
+
+@lru_cache(maxsize=8)
+def _harmonics(spline: Spline) -> Floats:
+    from scipy.interpolate import CubicSpline
+
+    at = _operators(spline).x
+    t = np.pi * (np.arange(len(at)) + 0.5) / len(at)
+    return cosines(t) @ CubicSpline(at, np.eye(len(at)))(0.5 * (1.0 + np.cos(t)))
 
 
 def _basis(spline: Spline, x: Floats) -> Floats:

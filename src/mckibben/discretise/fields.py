@@ -24,7 +24,19 @@ from mckibben.model.energy import scales
 from mckibben.model.parameters import Number, Parameters
 from mckibben.model.point import Point
 
-__all__ = ["Floats", "Form", "Operators", "Placed", "Sampling", "Variables", "known", "place", "points_at", "variables"]
+__all__ = [
+    "Floats",
+    "Form",
+    "Operators",
+    "Placed",
+    "Sampling",
+    "Variables",
+    "cosines",
+    "known",
+    "place",
+    "points_at",
+    "variables",
+]
 
 Floats = NDArray[np.floating[Any]]
 
@@ -110,3 +122,9 @@ def _fields(form: Form, operators: Operators | Sampling, jacobian: Array, u: Arr
 def known(form: Form, x: Variables, first: int = 0) -> Variables:
     """Variables (from number `first` on) with sines and cosines computed where they enter by those alone."""
     return tuple(Known.of(one) if angle else one for one, angle in zip(x, form.angles[first:], strict=True))
+
+
+def cosines(t: Floats) -> Floats:
+    """From values at the n midpoints t of [0, pi] to the coefficients c_k of sum c_k cos(k t), k < n."""
+    n = len(t)
+    return np.asarray(np.cos(np.outer(np.arange(n), t)) * np.where(np.arange(n) > 0, 2.0, 1.0)[:, None] / n)

@@ -12,7 +12,7 @@ import numpy as np
 from numpy.polynomial import legendre
 
 from mckibben.compiled.arrays import Array
-from mckibben.discretise.fields import Floats, Form, Operators, Sampling
+from mckibben.discretise.fields import Floats, Form, Operators, Sampling, cosines
 from mckibben.model.angle import radians
 from mckibben.model.kinematics import angle_rate
 from mckibben.model.parameters import Number, Parameters, functions
@@ -90,6 +90,10 @@ class Line:
         """Integral in x from the first end to each quadrature point."""
         return _operators(self).cumulate
 
+    def harmonics(self) -> Floats:
+        """From a smooth field at the quadrature points to c_k of sum c_k cos(k t), t = 0 at the last of x."""
+        return _harmonics(self)
+
     def coordinate(self, x: Any, p: Parameters, b: Number) -> Any:
         """Material coordinate v [m] of the mapped coordinate x."""
         f = functions(x, b)
@@ -163,6 +167,18 @@ def _modes(line: Line) -> Floats:
         if clamped:  # P_{n+2} - P_n is zero at x = -1 and x = 1
             series[n, k] = -1.0
     return series
+
+
+@lru_cache(maxsize=64)
+def _harmonics(line: Line) -> Floats:
+    """Barycentric interpolation at the midpoints of [0, pi]: through the Legendre series the ends lose four digits."""
+    xi, w = legendre.leggauss(line.points)
+    t = np.pi * (np.arange(line.points) + 0.5) / line.points
+    apart = np.cos(t)[:, None] - xi
+    same = np.abs(apart) < 1e-14
+    share = np.where(np.arange(line.points) % 2, -1.0, 1.0) * np.sqrt((1.0 - xi**2) * w) / np.where(same, 1.0, apart)
+    share = np.where(same.any(axis=1, keepdims=True), same, share)
+    return cosines(t) @ (share / share.sum(axis=1, keepdims=True))
 
 
 def cumulative(xi: Floats, w: Floats, at: Floats) -> Floats:

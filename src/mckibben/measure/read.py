@@ -16,6 +16,7 @@ from mckibben.compiled.arrays import Array
 from mckibben.compiled.kernel import kernel
 from mckibben.discretise.fields import Placed, place, points_at, variables
 from mckibben.discretise.fields import known as with_sines
+from mckibben.measure.peak import peak
 from mckibben.model.angle import cos, radians, slope
 from mckibben.model.chamber import chamber_density, chamber_pull
 from mckibben.model.energy import lagrangian
@@ -74,7 +75,9 @@ def read(basis: Basis, on: Placed, state: Unknowns) -> Reading:
     ends = np.array([0] if basis.half else [0, -1])
     checked = jax.tree.map(lambda one, other: jnp.concatenate([one, other[ends]]), inner, outer)
     variation = _variation(on, checked, jnp.concatenate([inner_costate, costate[ends]]), F, P, weights)
-    tallest = jax.vmap(lambda field: peak(field, basis.half))(jnp.stack([found["fibre_tension"], found["r"]]))
+    inner_tension = jax.vmap(lambda at, c: tension(at, c, F, P, p))(inner, inner_costate)
+    inner_radius = jax.vmap(lambda at: radius(at, p))(inner)
+    tallest = jax.vmap(lambda field: peak(field, basis.harmonics()))(jnp.stack([inner_tension, inner_radius]))
     numbers = {
         "length": length, "contraction": 1.0 - length / p.H0, "force": F, "pressure": P, "volume": volume,
         **{f"energy_{name}": part for name, part in zip(ENERGIES, parts, strict=True)}, "energy": sum(parts),
@@ -146,42 +149,6 @@ def stable(basis: Basis, on: Placed, local: Local, s: System, volume: Array, tog
     length = positive(t.stiffness, jnp.stack([t.gradients[0], *always]))
     sideways = positive(t.antisymmetric, t.closure[None]) if basis.half else jnp.array(True)
     return Stable(length, force, sideways)
-
-
-WINDOW = 9
-"""Nodes through which a maximum between nodes is sought."""
-_OFFSETS = np.arange(WINDOW) - float(WINDOW // 2)
-_SERIES = np.linalg.inv(np.vander(_OFFSETS))
-
-
-def peak(field: Float[Array, " n"], mirrored: bool = False) -> Float[Array, ""]:
-    """Largest value of a smooth field given at uniform nodes, on half the length if it is `mirrored`.
-
-    It is sought on the polynomial through the `WINDOW` nodes about the largest one: the value at the nodes alone would
-    have the derivative of the nearest node, which is wrong by as much as the maximum lies beside it.
-    """
-    if mirrored:
-        field = jnp.concatenate([field, field[:-1][::-1]])
-    half = len(field) // 2 + 1 if mirrored else len(field)
-    largest = jnp.argmax(field[:half])
-    first = jnp.clip(largest - WINDOW // 2, 0, len(field) - WINDOW)
-    near = jax.lax.dynamic_slice(field, (first,), (WINDOW,))
-    series = _SERIES @ near
-    slope_of, bend = jnp.polyder(series), jnp.polyder(series, 2)
-    start = jnp.asarray(_OFFSETS)[largest - first]
-    low, high = jnp.maximum(start - 1.0, _OFFSETS[0]), jnp.minimum(start + 1.0, _OFFSETS[-1])
-    flat = 1e-9 * jnp.abs(near).max()
-
-    def newton(at: Array) -> Array:
-        """One step, held between the neighbours; none where the field is level or has no maximum."""
-        curved = jnp.polyval(bend, at)
-        step = jnp.where(curved < -flat, jnp.polyval(slope_of, at) / jnp.where(curved < -flat, curved, 1.0), 0.0)
-        return jnp.clip(at - step, low, high)
-
-    at = jax.lax.stop_gradient(start)
-    for _ in range(6):
-        at = jax.lax.stop_gradient(newton(at))
-    return jnp.polyval(series, newton(at))  # the last step carries the derivative of the place
 
 
 AT_ONCE = 8
