@@ -6,8 +6,8 @@ from typing import Any
 
 _PUBLIC = {
     "mckibben.spec": (
-        "Braid", "Chamber", "CustomLaw", "Ends", "Fibre", "Gent", "MooneyRivlin", "Muscle", "NeoHookean", "Ogden",
-        "Yeoh", "BlockedForce", "FreeContraction", "Isobaric", "Isometric", "Isotonic", "Protocol", "Step",
+        "Braid", "Chamber", "CustomLaw", "Ends", "Fibre", "Gent", "Joint", "MooneyRivlin", "Muscle", "NeoHookean",
+        "Ogden", "Yeoh", "BlockedForce", "FreeContraction", "Isobaric", "Isometric", "Isotonic", "Protocol", "Step",
         "SpecError",
     ),
     "mckibben.experiments.run": ("run",),

@@ -13,7 +13,7 @@ import numpy as np
 from numpy.polynomial import legendre
 
 from mckibben.compiled.arrays import Array
-from mckibben.discretise.fields import Floats, Form, Operators, Sampling, Variables, cosines
+from mckibben.discretise.fields import Floats, Form, Integral, Operators, Sampling, Variables, cosines
 from mckibben.model.angle import radians, tan
 from mckibben.model.parameters import Number, Parameters, functions
 from mckibben.model.point import Point
@@ -30,11 +30,9 @@ def _point(x: Variables, p: Parameters) -> Point:
 
 
 FORM = Form(
-    start=lambda p: radians(p.theta0),
-    rate=lambda y, p: 0.0 * y[0],
+    integrals=(Integral(start=lambda p: radians(p.theta0), rate=lambda x, p: 0.0 * x[1], by=()),),
     point=_point,
     orders=(1, 2),
-    rated=(),
     angles=(True, False, False),
 )
 """y = (theta', theta''); theta itself is linear in the unknowns and nothing is integrated."""
@@ -130,7 +128,7 @@ def _operators(spline: Spline) -> Operators:
     xi, w = legendre.leggauss(3)
     x = ((np.arange(elements)[:, None] + (xi + 1.0) / 2.0) / elements).ravel()
     value, *rates = _basis(spline, x)
-    return Operators(x, np.tile(w / 2.0, elements) / elements, tuple(rates), value, np.zeros((len(x), len(x))))
+    return Operators(x, np.tile(w / 2.0, elements) / elements, tuple(rates), (value,), np.zeros((len(x), len(x))))
 
 
 @lru_cache(maxsize=8)
@@ -139,7 +137,7 @@ def _sampling(spline: Spline, count: int) -> Sampling:
     x = np.linspace(0.0, 1.0, count)
     value, *rates = _basis(spline, x)
     integral = _integral(spline, x)
-    return Sampling(x, tuple(rates), value, np.zeros_like(integral), integral)
+    return Sampling(x, tuple(rates), (value,), np.zeros_like(integral), integral)
 
 
 def _integral(spline: Spline, x: Floats) -> Floats:

@@ -1,13 +1,13 @@
 """From fields over the length to finitely many unknowns: what a discretisation says, and how others read it.
 
-At every point the local variables are x = (i, y): the fields y and their derivatives by v are linear in the unknowns
-u, and one variable i is linear in u plus the integral of a pointwise rate of the fields:
+At every point the local variables are x = (i, y): the fields y and their derivatives by v are linear in the unknowns u,
+and each variable i is linear in u plus the integral of a pointwise rate of the fields and of the variables before it:
 
-    y_k = O_k u / J^k,    i = start + lift u + C (J rate(y)),    J = dv/dx
+    y_k = O_k u / J^order,    i = start + lift u + C (J rate(x)),    J = dv/dx
 
 A `Form` says what they mean: how x gives the named state of the energy. The spectral line has y = (psi, psi') and
-integrates theta; the B-spline has theta itself and integrates nothing. Which unknowns belong to which field is known
-to the discretisations alone; nobody else indexes into u.
+integrates theta; where fibres stretch it integrates their stretch too. The B-spline has theta itself and integrates
+nothing. Which unknowns belong to which field is known to the discretisations alone; nobody else indexes into u.
 """
 
 from collections.abc import Callable
@@ -27,6 +27,7 @@ from mckibben.model.point import Point
 __all__ = [
     "Floats",
     "Form",
+    "Integral",
     "Operators",
     "Placed",
     "Sampling",
@@ -44,17 +45,23 @@ Variables = tuple[Any, ...]
 """Local variables (i, y_0, y_1 ...), each a number or an array over the points."""
 
 
+class Integral(NamedTuple):
+    """An integrated variable."""
+
+    start: Callable[[Parameters], Number]
+    """Its value at the first end, without unknowns."""
+    rate: Callable[[Variables, Parameters], Number]
+    """(x, p) -> its derivative by v."""
+    by: tuple[int, ...]  #: which of x the rate depends on: fields, integrals before it; none if it is none
+
+
 class Form(NamedTuple):
     """What the local variables of a discretisation mean."""
 
-    start: Callable[[Parameters], Number]
-    """The integrated variable at the first end, without unknowns."""
-    rate: Callable[[Variables, Parameters], Number]
-    """(y, p) -> derivative by v of the integrated variable."""
+    integrals: tuple[Integral, ...]
     point: Callable[[Variables, Parameters], Point]
     """(x, p) -> the state of the energy."""
     orders: tuple[int, ...]  #: how often each field of y is differentiated by v
-    rated: tuple[int, ...]  #: which fields the rate depends on; none where nothing is integrated
     angles: tuple[bool, ...]  #: which of x enter by their sine and cosine alone
 
 
@@ -64,7 +71,7 @@ class Operators(NamedTuple):
     x: Floats  #: coordinate of the points
     weights: Floats  #: quadrature in x over the full length
     fields: tuple[Floats, ...]  #: O_k (q, m)
-    lift: Floats  #: the integrated variable by unknowns directly (q, m)
+    lifts: tuple[Floats, ...]  #: each integrated variable by unknowns directly (q, m)
     cumulate: Floats  #: C: integral in x from the first end to each point (q, q)
 
 
@@ -73,7 +80,7 @@ class Sampling(NamedTuple):
 
     x: Floats
     fields: tuple[Floats, ...]  #: O_k (n, m)
-    lift: Floats  #: (n, m)
+    lifts: tuple[Floats, ...]  #: (n, m)
     sweep: Floats  #: integral in x of the rate, given at the quadrature points (n, q)
     integral: Floats  #: the same of what is even about mid-length, such as densities (n, q)
 
@@ -95,23 +102,34 @@ def place(basis: Any, p: Parameters, b: Number) -> Placed:
 
 def variables(basis: Any, on: Placed, u: Float[Array, " m"]) -> Variables:
     """x at the quadrature points (q each)."""
-    form, operators = basis.form, basis.operators()
-    fields = _fields(form, operators, on.jacobian, u)
-    start = form.start(on.p) + jnp.asarray(operators.lift) @ u
-    if not form.rated:
-        return (start, *fields)
-    return (start + operators.cumulate @ (on.jacobian * form.rate(known(form, fields, 1), on.p)), *fields)
+    operators = basis.operators()
+    fields = _fields(basis.form, operators, on.jacobian, u)
+    found: Variables = ()
+    for k, one in enumerate(basis.form.integrals):
+        value = one.start(on.p) + jnp.asarray(operators.lifts[k]) @ u
+        if one.by:
+            value = value + operators.cumulate @ (on.jacobian * _rate(basis.form, k, found, fields, on.p))
+        found = (*found, value)
+    return (*found, *fields)
+
+
+def _rate(form: Form, k: int, before: Variables, fields: Variables, p: Parameters) -> Number:
+    """Rate of integral k at points, from the integrals before it and the fields."""
+    one, unknown = form.integrals[k], (None,) * (len(form.integrals) - len(before[:k]))
+    return one.rate(known(form, (*before[:k], *unknown, *fields)), p)
 
 
 def points_at(basis: Any, on: Placed, u: Float[Array, " m"], sampling: Sampling) -> Point:
     """The state at output points (n each), angles `Known`."""
-    form = basis.form
+    form, n = basis.form, len(basis.form.integrals)
     fields = _fields(form, sampling, jnp.asarray(basis.jacobian(sampling.x, on.p, on.b)), u)
-    start = form.start(on.p) + jnp.asarray(sampling.lift) @ u
-    if form.rated:
-        inner = _fields(form, basis.operators(), on.jacobian, u)
-        start = start + sampling.sweep @ (on.jacobian * form.rate(known(form, inner, 1), on.p))
-    return form.point(known(form, (start, *fields)), on.p)
+    inner, found = variables(basis, on, u), []
+    for k, one in enumerate(form.integrals):
+        value = one.start(on.p) + jnp.asarray(sampling.lifts[k]) @ u
+        if one.by:
+            value = value + sampling.sweep @ (on.jacobian * _rate(form, k, inner, inner[n:], on.p))
+        found.append(value)
+    return form.point(known(form, (*found, *fields)), on.p)
 
 
 def _fields(form: Form, operators: Operators | Sampling, jacobian: Array, u: Array) -> Variables:
@@ -119,9 +137,9 @@ def _fields(form: Form, operators: Operators | Sampling, jacobian: Array, u: Arr
     return tuple(jnp.asarray(part) @ u / jacobian**order if order else jnp.asarray(part) @ u for part, order in parts)
 
 
-def known(form: Form, x: Variables, first: int = 0) -> Variables:
-    """Variables (from number `first` on) with sines and cosines computed where they enter by those alone."""
-    return tuple(Known.of(one) if angle else one for one, angle in zip(x, form.angles[first:], strict=True))
+def known(form: Form, x: Variables) -> Variables:
+    """Variables with sines and cosines computed where they enter by those alone; None stays None."""
+    return tuple(Known.of(one) if angle and one is not None else one for one, angle in zip(x, form.angles, strict=True))
 
 
 def cosines(t: Floats) -> Floats:

@@ -35,16 +35,26 @@ def sandwich(basis: Any, numbers: list[Array], together: bool) -> Float[Array, "
     return total
 
 
-def swept(basis: Any, turns: list[Array], together: bool) -> Float[Array, "q m"]:
-    """Derivative of the integrated variable by the unknowns; `turns` is J d(rate)/dy of the fields it depends on."""
+def swept(basis: Any, turns: tuple[tuple[Array, ...], ...], jacobian: Array, together: bool) -> tuple[Array, ...]:
+    """Derivatives (q, m) of the integrated variables by the unknowns; `turns` is J d(rate)/dx."""
     operators, form = basis.operators(), basis.form
-    if not form.rated:
-        return jnp.asarray(operators.lift)
-    if together:
-        tables = [turn @ _sweeps(basis, k) for turn, k in zip(turns, form.rated, strict=True)]
-        return sum(tables).reshape(operators.lift.shape) + operators.lift
-    rate = sum(turn[:, None] * operators.fields[k] for turn, k in zip(turns, form.rated, strict=True))
-    return jnp.asarray(operators.cumulate) @ rate + operators.lift
+    first, found = len(form.integrals), []
+    for one, by, lift in zip(form.integrals, turns, operators.lifts, strict=True):
+        if not one.by:
+            found.append(jnp.asarray(lift))
+            continue
+        own = {k - first: turn for k, turn in zip(one.by, by, strict=True) if k >= first}
+        own = {k: turn / jacobian ** form.orders[k] if form.orders[k] else turn for k, turn in own.items()}
+        before = [turn[:, None] * found[k] for k, turn in zip(one.by, by, strict=True) if k < first]
+        if together:
+            table = sum(turn @ _sweeps(basis, k) for k, turn in own.items()).reshape(lift.shape)
+            for part in before:
+                table = table + jnp.asarray(operators.cumulate) @ part
+        else:
+            rate = sum([*(turn[:, None] * operators.fields[k] for k, turn in own.items()), *before])
+            table = jnp.asarray(operators.cumulate) @ rate
+        found.append(table + lift)
+    return tuple(found)
 
 
 @lru_cache(maxsize=16)

@@ -1,10 +1,11 @@
 """The spectral line: the slope psi as a Legendre series in a coordinate that crowds points into the end layers.
 
 v = H0/2 (1 + tanh(b x)/tanh(b)), x in [-1, 1]. Symmetric shapes have psi odd about mid-length, so half the length and
-the odd polynomials suffice; their small antisymmetric disturbances have psi even; the full line takes both.
+the odd polynomials suffice; their small antisymmetric disturbances have psi even; the full line takes both. Stretch and
+roll of the fibres are series of their own beside it, of the same symmetry.
 """
 
-from functools import lru_cache
+from functools import lru_cache, reduce
 from typing import Any, Literal
 
 import attrs
@@ -13,42 +14,39 @@ from numpy.polynomial import legendre
 
 from mckibben.compiled.arrays import Array
 from mckibben.discretise.fields import Floats, Form, Operators, Sampling, cosines
-from mckibben.model.angle import radians
-from mckibben.model.kinematics import angle_rate
+from mckibben.discretise.forms import line_form
 from mckibben.model.parameters import Number, Parameters, functions
-from mckibben.model.point import Point
+from mckibben.spec import Joint, Muscle
 
 __all__ = ["Line", "Modes"]
 
 Modes = Literal["odd", "even", "all"]
-
-FORM = Form(
-    start=lambda p: radians(p.theta0),
-    rate=lambda y, p: angle_rate(Point(None, *y), p),
-    point=lambda x, p: Point(*x),
-    orders=(0, 1),
-    rated=(0,),
-    angles=(True, True, False),
-)
-"""y = (psi, kappa); theta is integrated from theta' = rate(psi), Eq. (12)."""
 
 
 @attrs.frozen
 class Line:
     """A space of slopes psi: `size` modes, their symmetry about mid-length, and the ends they satisfy.
 
-    The unknowns u are the coefficients of the modes and, where the radius of the ends is free, the change of the braid
-    angle there.
+    The unknowns u are the coefficients of the modes: of psi, of the excess where the fibres stretch, and of their roll;
+    then what changes at the first end: the braid angle where the radius is free or the fibres stretch, and the
+    logarithm of their stretch where both is so.
     """
 
     size: int
     ends: str = "clamped"
     modes: Modes = "odd"
+    stretch: bool = False  #: whether the fibres stretch
+    roll: bool = False  #: whether they roll
+
+    @classmethod
+    def of(cls, muscle: Muscle, size: int) -> "Line":
+        """The space of symmetric shapes of a muscle: what its ends hold, and what its fibres may do."""
+        return cls(size, str(muscle.ends), stretch=muscle.braid.fibre.stretch, roll=muscle.braid.joint == Joint.PIN)
 
     @property
     def form(self) -> Form:
         """What the local variables mean."""
-        return FORM
+        return line_form(self.stretch, self.roll, self.ends == "free")
 
     @property
     def points(self) -> int:
@@ -61,9 +59,19 @@ class Line:
         return self.modes != "all"
 
     @property
+    def series(self) -> tuple[str, ...]:
+        """Fields with a series of `size` modes each, in the order of the unknowns."""
+        return ("psi", *(("excess",) if self.stretch else ()), *(("roll",) if self.roll else ()))
+
+    @property
+    def turns(self) -> int:
+        """Unknowns of the first end, after the series: theta, and the stretch."""
+        return (self.ends == "free") + self.stretch
+
+    @property
     def unknowns(self) -> int:
-        """Unknowns of the equilibrium: the modes, and theta at the end where the radius is free."""
-        return self.size + (self.ends == "free")
+        """Unknowns of the equilibrium."""
+        return self.size * len(self.series) + self.turns
 
     @property
     def closes(self) -> bool:
@@ -110,21 +118,29 @@ class Line:
 
     def tail(self, u: Array) -> Any:
         """Largest of the last two coefficients over the largest (..., m): how well the series has converged."""
-        size = abs(u[..., : self.size])
-        return size[..., -2:].max(-1) / functions(u).maximum(size.max(-1), 1e-12)
+        size = abs(u[..., : self.size * len(self.series)])
+        last = [size[..., k * self.size - 2 : k * self.size].max(-1) for k in range(1, len(self.series) + 1)]
+        f = functions(u)
+        return reduce(f.maximum, last) / f.maximum(size.max(-1), 1e-12)
 
     def embedded(self, other: Any, u: Floats) -> Floats:
         """Unknowns u (m) of another line, larger or smaller or half of it, as unknowns of this one."""
-        found, shared = np.zeros(self.unknowns), min(self.size, other.size)
-        if self.modes == other.modes:
-            found[:shared] = u[:shared]
-        else:  # the odd modes of all are the half line's odd ones, and so with the even ones
-            place = found[: self.size][1 if other.modes == "odd" else 0 :: 2]
-            shared = min(len(place), other.size)
-            place[:shared] = u[:shared]
-        if self.ends == "free":
-            found[-1] = u[-1]
+        found = np.zeros(self.unknowns)
+        for k, name in enumerate(self.series):
+            if name in other.series:
+                at = other.series.index(name) * other.size
+                self._embed(found[k * self.size : (k + 1) * self.size], u[at : at + other.size], other.modes)
+        shared = min(self.turns, other.turns)
+        if shared:
+            found[len(found) - self.turns :][:shared] = u[len(u) - other.turns :][:shared]
         return found
+
+    def _embed(self, place: Floats, series: Floats, modes: Modes) -> None:
+        """Put one series in the place of this line's own: the odd modes of all are the half line's, and so the even."""
+        if self.modes != modes:
+            place = place[1 if modes == "odd" else 0 :: 2]
+        shared = min(len(place), len(series))
+        place[:shared] = series[:shared]
 
 
 @lru_cache(maxsize=64)
@@ -132,9 +148,9 @@ def _operators(line: Line) -> Operators:
     xi, w = legendre.leggauss(line.points)
     length = 1.0 if line.half else 2.0
     x = (xi - 1.0) / 2.0 if line.half else xi
-    shape, slope, lift = _at(line, x)
+    fields, lifts = _at(line, x)
     copies = 2.0 if line.half else 1.0
-    return Operators(x, copies * w * length / 2.0, (shape, slope), lift, cumulative(xi, w, xi) * length / 2.0)
+    return Operators(x, copies * w * length / 2.0, fields, lifts, cumulative(xi, w, xi) * length / 2.0)
 
 
 @lru_cache(maxsize=64)
@@ -142,26 +158,37 @@ def _sampling(line: Line, count: int) -> Sampling:
     xi, w = legendre.leggauss(line.points)
     x = np.linspace(-1.0, 0.0 if line.half else 1.0, count)
     length, at = (0.5, 2.0 * x + 1.0) if line.half else (1.0, x)
-    shape, slope, lift = _at(line, x)
+    fields, lifts = _at(line, x)
     integral = length * cumulative(xi, w, at)
-    return Sampling(x, (shape, slope), lift, integral, integral)
+    return Sampling(x, fields, lifts, integral, integral)
 
 
-def _at(line: Line, x: Floats) -> tuple[Floats, Floats, Floats]:
-    """psi, d psi/dx and the direct part of theta at x, by the unknowns."""
-    series, spare = _modes(line), np.zeros((len(x), line.unknowns - line.size))
-    shape, slope = legendre.legval(x, series).T, legendre.legval(x, legendre.legder(series)).T
-    return np.hstack([shape, spare]), np.hstack([slope, spare]), np.hstack([np.zeros_like(shape), spare + 1.0])
+def _at(line: Line, x: Floats) -> tuple[tuple[Floats, ...], tuple[Floats, ...]]:
+    """The fields, differentiated by x as often as their order says, and the direct parts of the integrals at x."""
+
+    def wide(part: Floats, first: int) -> Floats:
+        """A table of some unknowns as one of all."""
+        table = np.zeros((len(x), line.unknowns))
+        table[:, first : first + part.shape[1]] = part
+        return table
+
+    ends = [wide(np.ones((len(x), 1)), line.unknowns - line.turns + k) for k in range(line.turns)]
+    tables = []
+    for k, name in enumerate(line.series):
+        series = _modes(line.modes, line.size, clamped=line.ends == "clamped" and name != "excess")
+        value, slope = (wide(legendre.legval(x, part).T, k * line.size) for part in (series, legendre.legder(series)))
+        tables += [value, ends[0]] if name == "excess" else [value, slope]
+    lifts = (*ends, *[wide(np.zeros((len(x), 0)), 0)] * 2)
+    return tuple(tables), lifts[: len(line.form.integrals)]
 
 
-def _modes(line: Line) -> Floats:
+def _modes(modes: Modes, size: int, clamped: bool) -> Floats:
     """Legendre coefficients of the modes, one column each; clamped modes vanish at both ends."""
-    step = 1 if line.modes == "all" else 2
-    first = 1 if line.modes == "odd" else 0
-    clamped = line.ends == "clamped"
+    step = 1 if modes == "all" else 2
+    first = 1 if modes == "odd" else 0
     lead = 2 if clamped else 0
-    series = np.zeros((first + step * (line.size - 1) + lead + 1, line.size))
-    for k in range(line.size):
+    series = np.zeros((first + step * (size - 1) + lead + 1, size))
+    for k in range(size):
         n = first + step * k
         series[n + lead, k] = 1.0
         if clamped:  # P_{n+2} - P_n is zero at x = -1 and x = 1

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator
 
-from mckibben.model.extension import full_extension
+from mckibben.model.extension import longest
 from mckibben.spec import Muscle, Test
 from mckibben.spec.angle import MAGIC, both_ways, tendency
 from mckibben.units import show
@@ -17,16 +17,15 @@ def derived(muscle: Muscle) -> Iterator[tuple[str, str, str]]:
     """(quantity, value, meaning) of what follows from the fields without solving anything."""
     braid, fibre = muscle.braid, muscle.braid.fibre
     yield "braid", tendency(braid.angle), f"long muscles turn at {show(MAGIC, 'rad', 4)} from the parallels (Eq. 31)"
-    longest = full_extension(braid.radius, braid.length, braid.angle, str(muscle.ends))
-    yield (
-        "full extension",
-        show(longest, "m"),
-        "longest possible length: the fibres are straight, the force has no bound",
-    )
+    if not fibre.stretch:
+        meaning = "longest possible length: the fibres are straight, the force has no bound"
+        yield "full extension", show(longest(muscle), "m"), meaning
     yield "fibre length", show(braid.length / math.sin(braid.angle), "m"), "from fitting to fitting, along one fibre"
     for name, value in zip(("B1", "B2", "B3"), fibre.stiffnesses, strict=True):
         way = {"B1": "bending in the tangent plane", "B2": "bending normal to the tube", "B3": "torsion"}[name]
         yield f"fibre stiffness {name}", show(value, "N m^2"), way
+    if fibre.EA is not None:
+        yield "fibre stiffness EA", show(fibre.EA, "N"), "tension over strain of one fibre"
     if muscle.chamber is not None and hasattr(muscle.chamber.law, "shear_modulus"):
         yield "shear modulus", show(muscle.chamber.law.shear_modulus, "kPa"), "of the chamber, at small strain"
     if fibre.diameter is not None:
@@ -43,9 +42,8 @@ def turns(muscle: Muscle) -> str:
 
 def beyond(muscle: Muscle, test: Test | None) -> Iterator[str]:
     """What of a test cannot be reached, as far as that can be told without solving."""
-    braid = muscle.braid
-    longest = full_extension(braid.radius, braid.length, braid.angle, str(muscle.ends))
+    most = longest(muscle)
     for step in test.as_steps(muscle) if test is not None else ():
         length = max((float(value) for value in step.length.waypoints), default=0.0) if step.length is not None else 0.0
-        if length >= longest:
-            yield f"note: the test asks for a length of {show(length, 'm')}; full extension is {show(longest, 'm')}"
+        if length >= most:
+            yield f"note: the test asks for a length of {show(length, 'm')}; full extension is {show(most, 'm')}"

@@ -64,7 +64,7 @@ def response(
     p = parameters(muscle)
     fixed_p, fixed_steps = jax.tree.map(jax.lax.stop_gradient, (p, steps))
     if any(isinstance(leaf, jax.core.Tracer) for leaf in jax.tree.leaves((fixed_p, fixed_steps))):
-        basis: Basis = Line(size, str(muscle.ends))
+        basis: Basis = Line.of(muscle, size)
         b = placement(fixed_p, fixed_steps)
         states = approach(basis, fixed_p, b, fixed_steps)
     else:

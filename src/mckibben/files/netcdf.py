@@ -19,7 +19,7 @@ import numpy as np
 from mckibben import disk
 from mckibben.files.seal import SIGNATURE, Parts, damage, sealed
 from mckibben.results.result import Result
-from mckibben.results.variables import COORDINATES, FIELDS, VARIABLES, about_variable, dimensions
+from mckibben.results.variables import COORDINATES, FIELDS, OPTIONAL, VARIABLES, about_variable, dimensions, has
 from mckibben.spec import Muscle, Test
 from mckibben.spec.errors import SpecError
 from mckibben.spec.plausible import trusted
@@ -42,7 +42,7 @@ def save(result: Result, path: str | PathLike[str], force: bool = False) -> Path
     with h5netcdf.File(content, "w") as file:
         file.dimensions = {"step": len(result), "v": len(result.column("v"))}
         _put(file, "step", np.arange(len(result)))
-        for name in ("v", *VARIABLES):
+        for name in ("v", *(name for name in VARIABLES if has(result.muscle, name))):
             _put(file, name, result.column(name))
         file.attrs.update(result.attributes)
     return disk.write(path, sealed(content.getbuffer(), _parts(content)), force)
@@ -127,6 +127,8 @@ def _checked(name: str, stored: xr.Dataset) -> xr.Dataset:
     variables: dict[str, Any] = {}
     for variable in VARIABLES:
         dims = dimensions(variable)
+        if variable in OPTIONAL and variable not in stored.data_vars:
+            continue
         if variable not in stored.data_vars or stored[variable].dims != dims:
             raise SpecError(
                 name, allowed=f"holds no {variable} per {' and '.join(dims)} (written by mckibben {writer})"

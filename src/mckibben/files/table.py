@@ -14,7 +14,7 @@ import numpy as np
 from mckibben import disk
 from mckibben.results.result import Result
 from mckibben.results.sensitivity import Sensitivity
-from mckibben.results.variables import EXTREMES, STEP
+from mckibben.results.variables import EXTREMES, STEP, has
 
 __all__ = ["COLUMNS", "map_csv", "map_rows", "notes_file", "rows", "save_csv", "save_sensitivity"]
 
@@ -34,9 +34,10 @@ def save_csv(result: Result, path: str | PathLike[str], force: bool = False) -> 
     """Write the variables per state as a table in SI units, NaN as an empty cell. It cannot be loaded as a result."""
     text = io.StringIO(newline="")
     writer = csv.writer(text, lineterminator="\n")
-    writer.writerow(["state", *(_header(name, unit) for name, (unit, _) in COLUMNS.items())])
+    names = [name for name in COLUMNS if has(result.muscle, name)]
+    writer.writerow(["state", *(_header(name, COLUMNS[name][0]) for name in names)])
     for state, row in enumerate(rows(result)):
-        writer.writerow([state, *(_cell(row[name]) for name in COLUMNS)])
+        writer.writerow([state, *(_cell(row[name]) for name in names)])
     return _write(path, _comments(result), text.getvalue(), force)
 
 
@@ -70,7 +71,7 @@ def save_sensitivity(found: Sensitivity, path: str | PathLike[str], force: bool 
 
 def rows(result: Result) -> Iterator[dict[str, Any]]:
     """The variables of each state, and the extremes of its fields, as plain Python values in SI, None for NaN."""
-    columns = {name: result.column(name).tolist() for name in STEP} | _extremes(result)
+    columns = {name: result.column(name).tolist() for name in STEP if has(result.muscle, name)} | _extremes(result)
     for state in range(len(result)):
         values = {name: column[state] for name, column in columns.items()}
         yield {name: None if value != value else value for name, value in values.items()}

@@ -20,7 +20,7 @@ from mckibben.measure.peak import peak
 from mckibben.model.angle import cos, radians, slope
 from mckibben.model.chamber import chamber_density, chamber_pull
 from mckibben.model.energy import lagrangian
-from mckibben.model.fibres import fibre_densities
+from mckibben.model.fibres import axial_density, fibre_densities
 from mckibben.model.kinematics import fibre_strains, height_rate, radius, stretches, volume_rate
 from mckibben.model.parameters import Number, Parameters
 from mckibben.model.point import Point
@@ -61,26 +61,27 @@ def read(basis: Basis, on: Placed, state: Unknowns) -> Reading:
     inner = _points(basis, on, state.u)
     outer = points_at(basis, on, state.u, sampling)
 
-    def local(at: Point) -> tuple[Array, tuple[Array, ...], Array, Array]:
-        pull = slope(lambda theta: lagrangian(at._replace(theta=theta), p, F, P), at.theta)
-        return pull, (*fibre_densities(at, p), chamber_density(at, p)), height_rate(at, p), volume_rate(at, p)
+    def local(at: Point) -> tuple[tuple[Array, ...], Array, Array]:
+        return tuple(_densities(at, p).values()), height_rate(at, p), volume_rate(at, p)
 
-    pull, densities, rate, swept = jax.vmap(local)(inner)
+    densities, rate, swept = jax.vmap(local)(inner)
+    names = ENERGIES if inner.stretch is None else (*ENERGIES, "stretch")
     weights = jnp.asarray(operators.weights) * on.jacobian
     parts = [jnp.sum(weights * density) for density in densities]
     length, volume = jnp.sum(weights * rate), jnp.sum(weights * swept)
-    inner_costate, costate = _costates(basis, on, pull, M, sampling)
-    found = jax.vmap(lambda at, c: _fields(at, c, F, P, p))(outer, costate)
+    inner_costates, costates = _costates(basis, on, inner, (F, P, M), sampling)
+    found = jax.vmap(lambda at, c: _fields(at, c, F, P, p))(outer, costates)
     found["z"] = sampling.integral @ (on.jacobian * rate)
     ends = np.array([0] if basis.half else [0, -1])
     checked = jax.tree.map(lambda one, other: jnp.concatenate([one, other[ends]]), inner, outer)
-    variation = _variation(on, checked, jnp.concatenate([inner_costate, costate[ends]]), F, P, weights)
-    inner_tension = jax.vmap(lambda at, c: tension(at, c, F, P, p))(inner, inner_costate)
+    along = jax.tree.map(lambda one, other: jnp.concatenate([one, other[ends]]), inner_costates, costates)
+    variation = _variation(on, checked, along, F, P, weights)
+    inner_tension = jax.vmap(lambda at, c: tension(at, c, F, P, p))(inner, inner_costates)
     inner_radius = jax.vmap(lambda at: radius(at, p))(inner)
     tallest = jax.vmap(lambda field: peak(field, basis.harmonics()))(jnp.stack([inner_tension, inner_radius]))
     numbers = {
         "length": length, "contraction": 1.0 - length / p.H0, "force": F, "pressure": P, "volume": volume,
-        **{f"energy_{name}": part for name, part in zip(ENERGIES, parts, strict=True)}, "energy": sum(parts),
+        **{f"energy_{name}": part for name, part in zip(names, parts, strict=True)}, "energy": sum(parts),
         "peak_fibre_tension": tallest[0], "largest_radius": tallest[1],
     }  # fmt: skip
     return Reading(numbers, found, jnp.abs(found["psi"]).max(), variation, basis.tail(state.u))
@@ -91,42 +92,83 @@ def _points(basis: Basis, on: Placed, u: Array) -> Point:
     return basis.form.point(with_sines(basis.form, variables(basis, on, u)), on.p)
 
 
-def _costates(basis: Basis, on: Placed, pull: Array, M: Number, sampling: Any) -> tuple[Array, Array]:
-    """The costate p' = dL/dtheta at the quadrature points and at the output points.
+def _densities(at: Point, p: Parameters) -> dict[str, Number]:
+    """The parts of the stored energy per unit v [J/m], by name."""
+    parts = dict(zip(ENERGIES, (*fibre_densities(at, p), chamber_density(at, p)), strict=True))
+    return parts if at.stretch is None else parts | {"stretch": axial_density(at, p)}
 
-    It is zero at mid-length of a symmetric state; where equal radii are a condition it is its multiplier at v = H0.
+
+Costates = tuple[Array, ...]
+"""Of what is integrated along the length: theta, and the logarithm of the stretch where fibres stretch."""
+
+
+def _costates(
+    basis: Basis, on: Placed, at: Point, loads: tuple[Number, ...], sampling: Any
+) -> tuple[Costates, Costates]:  # fmt: skip
+    """Costates at the quadrature points and at the output points: p' = dL/dtheta of theta, q' = dL/dlog(lambda) of the
+    stretch, which theta owes q excess/cos^2(theta).
+
+    They are zero at mid-length of a symmetric state; where equal radii are a condition that of theta is its multiplier
+    at v = H0.
     """
-    swept = on.jacobian * pull
-    middle = NODES // 2
-    inner = jnp.asarray(basis.inner_integral()) @ swept
-    outer = jnp.asarray(sampling.integral) @ swept
-    end = outer[-1] - M if basis.closes else outer[middle]
-    return inner - end, outer - end
+    F, P, M = loads
+    p, middle = on.p, NODES // 2
+
+    def swept(pull: Array, end: Number) -> tuple[Array, Array]:
+        tables = basis.inner_integral(), sampling.integral
+        inner, outer = (jnp.asarray(table) @ (on.jacobian * pull) for table in tables)
+        last = outer[-1] - end if basis.closes else outer[middle]
+        return inner - last, outer - last
+
+    def pulls(at: Point) -> Array:
+        return slope(lambda theta: lagrangian(at._replace(theta=theta), p, F, P), at.theta)
+
+    if at.stretch is None:
+        inner, outer = swept(jax.vmap(pulls)(at), M)
+        return (inner,), (outer,)
+
+    def loaded(at: Point) -> Number:
+        return lagrangian(at, p, F, P, M)
+
+    def turned(at: Point) -> tuple[Number, Number]:
+        stretched = jax.grad(lambda factor: loaded(at._replace(stretch=factor * at.stretch)))(1.0)
+        return stretched, slope(lambda theta: loaded(at._replace(theta=theta)), at.theta)
+
+    by_stretch, by_theta = jax.vmap(turned)(at)
+    inner_stretch, outer_stretch = swept(by_stretch, 0.0)
+    inner, outer = swept(by_theta - inner_stretch * at.excess / cos(at.theta) ** 2, 0.0)
+    return (inner, inner_stretch), (outer, outer_stretch)
 
 
-def _fields(at: Point, costate: Number, F: Number, P: Number, p: Parameters) -> dict[str, Number]:
-    bending1, bending2, twist = fibre_densities(at, p)
+def _fields(at: Point, costates: Costates, F: Number, P: Number, p: Parameters) -> dict[str, Number]:
+    density = _densities(at, p)
+    bending1, bending2, twist = (density[name] for name in ENERGIES[:3])
     hoop, axial, thickness = stretches(at, p)
     u1, u2, u3 = fibre_strains(at, p)
     chamber_axial = chamber_pull(at, p) * cos(at.psi)
     total_axial = F + jnp.pi * radius(at, p) ** 2 * P
-    return {
+    effects: dict[str, Number] = {}
+    if at.stretch is not None:
+        effects |= {"fibre_stretch": at.stretch, "density_stretch": density["stretch"]}
+    if at.roll is not None:
+        effects["roll"] = radians(at.roll)
+    return effects | {
         "theta": radians(at.theta), "psi": radians(at.psi), "r": radius(at, p),
         "stretch_hoop": hoop, "stretch_axial": axial, "stretch_thickness": thickness,
         "u1": u1, "u2": u2, "u3": u3,
         "density_bending_1": bending1, "density_bending_2": bending2, "density_twist": twist,
-        "density_fibres": bending1 + bending2 + twist, "density_chamber": chamber_density(at, p),
-        "fibre_tension": tension(at, costate, F, P, p),
+        "density_fibres": bending1 + bending2 + twist, "density_chamber": density["chamber"],
+        "fibre_tension": tension(at, costates, F, P, p),
         "share_chamber": chamber_axial / total_axial, "share_mesh": 1.0 - chamber_axial / total_axial,
     }  # fmt: skip
 
 
-def _variation(on: Placed, at: Point, costate: Array, F: Number, P: Number, weights: Array) -> Float[Array, ""]:
+def _variation(on: Placed, at: Point, costates: Costates, F: Number, P: Number, weights: Array) -> Float[Array, ""]:
     """Relative variation of the conserved quantity over the quadrature points and the fittings after them.
 
     The fittings count together like one point of the mesh.
     """
-    kept, size = jax.vmap(lambda at, c: conserved(at, c, F, P, on.p))(at, costate)
+    kept, size = jax.vmap(lambda at, c: conserved(at, c, F, P, on.p))(at, costates)
     q, ends = len(weights), len(kept) - len(weights)
     weight = jnp.concatenate([weights / weights.sum(), jnp.full(ends, 1.0 / (q * ends))])
     weight = weight / weight.sum()
@@ -147,7 +189,7 @@ def stable(basis: Basis, on: Placed, local: Local, s: System, volume: Array, tog
     always = [jnp.where(volume, t.gradients[1], 0.0), *t.gradients[2:]]
     force = positive(t.stiffness, jnp.stack(always))
     length = positive(t.stiffness, jnp.stack([t.gradients[0], *always]))
-    sideways = positive(t.antisymmetric, t.closure[None]) if basis.half else jnp.array(True)
+    sideways = positive(t.antisymmetric, t.closure) if basis.half else jnp.array(True)
     return Stable(length, force, sideways)
 
 

@@ -14,14 +14,15 @@ from mckibben.measure.read import ENERGIES, NODES
 from mckibben.measure.survey import Survey
 from mckibben.measure.work import work
 from mckibben.results.result import Result, Table, about
-from mckibben.results.variables import FIELDS
+from mckibben.results.variables import FIELDS, has
 from mckibben.results.verdict import Shape, Verdict
 from mckibben.solver.held import Held
 from mckibben.solver.path import INTERRUPTED
 from mckibben.spec import Muscle, Test
 
 NUMBERS = (
-    "length", "contraction", "force", "pressure", "volume", *(f"energy_{name}" for name in ENERGIES), "energy",
+    "length", "contraction", "force", "pressure", "volume", *(f"energy_{name}" for name in ENERGIES), "energy_stretch",
+    "energy",
     "residual", "error_estimate", "coefficient_tail", "conserved_variation",
 )  # fmt: skip
 
@@ -56,11 +57,11 @@ class Part:
 
 def report(muscle: Muscle, test: Test, parts: list[Part], H0: float, cautions: list[str]) -> tuple[Result, list[str]]:
     """The Result, and what a real muscle would do that the model does not know."""
-    columns = [_columns(k, part, H0) for k, part in enumerate(parts)]
+    columns = [_columns(k, part, H0, [name for name in NUMBERS if has(muscle, name)]) for k, part in enumerate(parts)]
     steps = {name: np.concatenate([column[name] for column in columns]) for name in columns[0]}
-    fields = _fields(parts)
+    fields = _fields(parts, [name for name in FIELDS if has(muscle, name)])
     lost = ~np.isin(steps["verdict"], [Verdict.STABLE, Verdict.UNSTABLE])
-    for values in (*fields.values(), *(steps[name] for name in NUMBERS)):
+    for values in (*fields.values(), *(steps[name] for name in NUMBERS if name in steps)):
         values[lost] = np.nan
     steps["work"] = np.concatenate(_work(columns, lost))
     notes = [*cautions, *after(muscle, steps, fields)]
@@ -80,10 +81,10 @@ def versions() -> dict[str, str]:
     return {name: version(name) for name in ("mckibben", "jax", "numpy", "scipy", "xarray")}
 
 
-def _columns(k: int, part: Part, H0: float) -> dict[str, np.ndarray]:
+def _columns(k: int, part: Part, H0: float, numbers: list[str]) -> dict[str, np.ndarray]:
     """Per-state variables of one step of the test; NaN beyond the part reached."""
     n, seen, look = part.asked, slice(0, part.reached), part.survey
-    column: dict[str, np.ndarray] = {name: np.full(n, np.nan) for name in NUMBERS}
+    column: dict[str, np.ndarray] = {name: np.full(n, np.nan) for name in numbers}
     counts = {f"modes_{name}": np.full(n, -1) for name in ("length_control", "force_control", "antisymmetric")}
     column |= counts | {"iterations": np.zeros(n, int), "protocol_step": np.full(n, k)}
     column["converged"] = np.arange(n) < part.reached
@@ -122,19 +123,19 @@ def _single(one: Sought) -> dict[str, Any]:
     }  # fmt: skip
 
 
-def _fields(parts: list[Part]) -> dict[str, np.ndarray]:
+def _fields(parts: list[Part], names: list[str]) -> dict[str, np.ndarray]:
     """Fields of all steps of the test; NaN beyond the parts reached."""
     rooms = []
     for part in parts:
         seen = {} if part.survey is None else part.survey.fields
-        room = {name: np.full((part.asked, NODES), np.nan) for name in FIELDS}
+        room = {name: np.full((part.asked, NODES), np.nan) for name in names}
         for name, values in seen.items():
             room[name][: part.reached] = values
         for i, one in part.sought.items():
             for name, values in _at(part, one).items():
                 room[name][i] = values
         rooms.append(room)
-    return {name: np.concatenate([room[name] for room in rooms]) for name in FIELDS}
+    return {name: np.concatenate([room[name] for room in rooms]) for name in names}
 
 
 def _at(part: Part, one: Sought) -> dict[str, np.ndarray]:

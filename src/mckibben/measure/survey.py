@@ -8,7 +8,7 @@ import numpy as np
 from mckibben.measure.judge import Judgement, judge, shape_of
 from mckibben.measure.meridian import meridian
 from mckibben.measure.read import NODES, Reading, Stable, read_many
-from mckibben.model.extension import full_extension
+from mckibben.model.extension import longest_of
 from mckibben.model.parameters import Parameters
 from mckibben.results.verdict import Modes, Shape
 from mckibben.solver.follow import padded
@@ -25,7 +25,7 @@ STRETCHED = 0.998
 """Share of full extension beyond which the variation of the conserved quantity says too little of the force."""
 PLAIN_SLOPE = 1.5
 """Slope [rad] of the meridian below which no shape is anything but ordinary."""
-ODD = ("psi", "u1")
+ODD = ("psi", "u1", "roll")
 """Fields that change sign at mid-length of a symmetric state."""
 PLAIN = Modes(0, 0, 0, float("nan"), float("nan"), float("nan"))
 """Of a state that is stable in every way: nothing was counted."""
@@ -149,4 +149,4 @@ def error_bound(
 def nearly_straight(problem: Problem, length: np.ndarray) -> np.ndarray:
     """At which lengths [m] the fibres are so nearly straight that an error estimate must know it."""
     p = problem.p
-    return length > STRETCHED * full_extension(float(p.R0), float(p.H0), float(p.theta0), problem.basis.ends)
+    return length > STRETCHED * longest_of(p, problem.basis.ends)

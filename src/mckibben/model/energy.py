@@ -12,15 +12,15 @@ import jax.numpy as jnp
 
 from mckibben.compiled.arrays import Array
 from mckibben.model.chamber import chamber_density
-from mckibben.model.fibres import fibre_densities
-from mckibben.model.kinematics import angle_rate, height_rate, volume_rate
+from mckibben.model.fibres import axial_density, fibre_densities
+from mckibben.model.kinematics import closure_rate, height_rate, volume_rate
 from mckibben.model.parameters import Number, Parameters
 from mckibben.model.point import Point
 
 __all__ = ["LOADS", "QUANTITIES", "lagrangian", "remember", "scales", "stored", "works"]
 
 QUANTITIES = ("energy", "length", "volume", "closure")
-"""What densities along the length integrate to: stored energy, length h, volume V, and theta(H0) - theta(0)."""
+"""What densities along the length integrate to: stored energy, length h, volume V, and what equal end radii null."""
 
 LOADS = ("force", "pressure", "moment")
 """What does work on the change of length, volume and closure: axial force F, gauge pressure P, closing moment M."""
@@ -31,7 +31,8 @@ def stored(at: Point, p: Parameters, memory: Any = None) -> Number:
 
     `memory` is what a material point keeps of the state before; nothing here has one yet.
     """
-    return sum(fibre_densities(at, p)) + chamber_density(at, p)
+    energy = sum(fibre_densities(at, p)) + chamber_density(at, p)
+    return energy if at.stretch is None else energy + axial_density(at, p)
 
 
 def remember(at: Point, p: Parameters, memory: Any) -> Any:
@@ -41,11 +42,11 @@ def remember(at: Point, p: Parameters, memory: Any) -> Any:
 
 def works(at: Point, p: Parameters) -> tuple[Number, Number, Number]:
     """Densities per unit v of length, volume and closure, on whose change the `LOADS` do work."""
-    return height_rate(at, p), volume_rate(at, p), angle_rate(at, p)
+    return height_rate(at, p), volume_rate(at, p), closure_rate(at, p)
 
 
 def lagrangian(at: Point, p: Parameters, F: Number, P: Number, M: Number = 0.0, memory: Any = None) -> Number:
-    """L = w - F z' - P pi r^2 z' - M theta' [J/m]: what a state makes stationary."""
+    """L = w - F z' - P pi r^2 z' - M closure [J/m]: what a state makes stationary."""
     height, volume, closure = works(at, p)
     return stored(at, p, memory) - F * height - P * volume - M * closure
 

@@ -6,10 +6,24 @@ from functools import lru_cache
 
 from mckibben import spec
 from mckibben.model.elliptic import elliprd, elliprf
+from mckibben.model.parameters import Parameters
 from mckibben.units import Number
 
 LONG = 25.0
 """From this T on, the long muscle's limit is exact: what it leaves out is of order T exp(-2 T)."""
+
+
+def longest(muscle: spec.Muscle) -> float:
+    """Longest admissible length [m] of a muscle; infinite where its fibres stretch."""
+    braid = muscle.braid
+    if braid.fibre.stretch:
+        return math.inf
+    return full_extension(float(braid.radius), float(braid.length), float(braid.angle), str(muscle.ends))
+
+
+def longest_of(p: Parameters, ends: str) -> float:
+    """The same from a muscle's numbers."""
+    return math.inf if p.EA is not None else full_extension(float(p.R0), float(p.H0), float(p.theta0), ends)
 
 
 @lru_cache(maxsize=256)

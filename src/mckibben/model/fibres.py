@@ -1,11 +1,13 @@
 """Elastic energy of the mesh of Kirchhoff rods, per unit v."""
 
+import jax.numpy as jnp
+
 from mckibben.model.angle import sin
 from mckibben.model.kinematics import fibre_strains, natural_strains
 from mckibben.model.parameters import Number, Parameters
 from mckibben.model.point import Point
 
-__all__ = ["fibre_densities"]
+__all__ = ["axial_density", "axial_force", "fibre_densities"]
 
 
 def fibre_densities(at: Point, p: Parameters) -> tuple[Number, Number, Number]:
@@ -17,3 +19,14 @@ def fibre_densities(at: Point, p: Parameters) -> tuple[Number, Number, Number]:
     factor = p.N / (2.0 * sin(p.theta0))
     d1, d2, d3 = (factor * B * (u - u0) ** 2 for B, u, u0 in zip((p.B1, p.B2, p.B3), strains, natural, strict=True))
     return d1, d2, d3
+
+
+def axial_force(at: Point, p: Parameters) -> Number:
+    """Tension T [N] of a fibre that stretches: EA (lambda - 1); none where a slack one is shortened."""
+    strain = at.stretch - 1.0
+    return p.EA * jnp.where((p.slack > 0.0) & (strain < 0.0), 0.0, strain)
+
+
+def axial_density(at: Point, p: Parameters) -> Number:
+    """Energy of the stretch of all N fibres per unit v [J/m]: N EA/(2 sin(theta0)) (lambda - 1)^2."""
+    return p.N / (2.0 * sin(p.theta0)) * axial_force(at, p) * (at.stretch - 1.0)

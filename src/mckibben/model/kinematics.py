@@ -8,35 +8,55 @@ from mckibben.model.point import Point
 
 __all__ = [
     "angle_rate",
+    "closure_rate",
     "fibre_strains",
     "height_rate",
     "meridian_stretch",
     "natural_strains",
     "radius",
+    "stretch_rate",
     "stretches",
     "volume_rate",
 ]
 
 
 def radius(at: Point, p: Parameters) -> Number:
-    """Current radius r [m] (Eq. 11)."""
-    return p.R0 * cos(at.theta) / cos(p.theta0)
+    """Current radius r [m] (Eq. 11), times the stretch of the fibres."""
+    return _stretched(p.R0 * cos(at.theta) / cos(p.theta0), at)
+
+
+def _stretched(value: Number, at: Point) -> Number:
+    """What is proportional to the length of the fibres."""
+    return value if at.stretch is None else at.stretch * value
 
 
 def meridian_stretch(at: Point, p: Parameters) -> Number:
     """Meridian stretch s = |d(r, z)/dv| (square root of G in Eq. 5, by Eq. 10 corrected)."""
-    return sin(at.theta) / sin(p.theta0)
+    return _stretched(sin(at.theta) / sin(p.theta0), at)
 
 
 def stretches(at: Point, p: Parameters) -> tuple[Number, Number, Number]:
     """Principal stretches of the incompressible chamber: hoop, axial, thickness (Eq. 24)."""
-    hoop, axial = cos(at.theta) / cos(p.theta0), meridian_stretch(at, p)
+    hoop, axial = _stretched(cos(at.theta) / cos(p.theta0), at), meridian_stretch(at, p)
     return hoop, axial, 1.0 / (hoop * axial)
 
 
 def angle_rate(at: Point, p: Parameters) -> Number:
-    """theta' = d theta/dv [rad/m] that keeps the fibres inextensible at slope psi (Eqs. 11-12); needs psi alone."""
-    return -sin(at.psi) / (p.R0 * tan(p.theta0))
+    """theta' = d theta/dv [rad/m] that keeps the fibres inextensible at slope psi (Eqs. 11-12), and its excess."""
+    rate = -sin(at.psi) / (p.R0 * tan(p.theta0))
+    return rate if at.excess is None else rate + at.excess
+
+
+def stretch_rate(at: Point, p: Parameters) -> Number:
+    """lambda'/lambda [1/m] of fibres that stretch: what r' = s sin(psi) asks for (theory page)."""
+    return at.excess * tan(at.theta)
+
+
+def closure_rate(at: Point, p: Parameters) -> Number:
+    """Density of what vanishes where both ends have one radius: theta', or -r' cos(theta0)/R0 of stretching fibres."""
+    if at.stretch is None:
+        return angle_rate(at, p)
+    return -meridian_stretch(at, p) * sin(at.psi) * cos(p.theta0) / p.R0
 
 
 def height_rate(at: Point, p: Parameters) -> Number:
@@ -55,10 +75,18 @@ def fibre_strains(at: Point, p: Parameters) -> tuple[Number, Number, Number]:
     Eq. (15) is misprinted in the paper: its first term divides by tan(theta), not tan(theta0).
     """
     u1 = -2.0 * cos(p.theta0) * sin(at.psi) / p.R0
+    if at.excess is not None:
+        u1 = u1 + sin(p.theta0) * at.excess
     hoop, bend = cos(p.theta0) * cos(at.psi) / p.R0, sin(p.theta0) * at.kappa
     u2 = -hoop * cos(at.theta) + bend * sin(at.theta)
     u3 = hoop * sin(at.theta) + bend * cos(at.theta)
-    return u1, u2, u3
+    return (u1, u2, u3) if at.roll is None else _rolled(u1, u2, u3, at, p)
+
+
+def _rolled(u1: Number, u2: Number, u3: Number, at: Point, p: Parameters) -> tuple[Number, Number, Number]:
+    """Strains about the axes of a section that has turned by phi about the fibre (theory page)."""
+    c, s = cos(at.roll), sin(at.roll)
+    return c * u1 + s * u2, c * u2 - s * u1, u3 + sin(p.theta0) * at.roll_rate
 
 
 def natural_strains(p: Parameters) -> tuple[Number, Number, Number]:

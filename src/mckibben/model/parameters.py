@@ -40,6 +40,8 @@ class Parameters(NamedTuple):
     helical: Number  #: 1 if the initial helix is stress-free, 0 if the straight fibre is
     A0: Number  #: area of the chamber's wall in the initial cross-section [m^2] (Eq. 26)
     law: Any  #: law of the chamber: its kind is static, its constants are leaves; None for the bare braid
+    EA: Any = None  #: axial stiffness of a fibre [N]; None where the fibres do not stretch
+    slack: Any = None  #: 1 if a fibre carries no compression, 0 if it does
 
 
 def parameters(muscle: Muscle) -> Parameters:
@@ -62,6 +64,8 @@ def numbers(muscle: Muscle) -> Parameters:
         1.0 if fibre.natural == "helical" else 0.0,
         np.pi * thickness * (thickness + 2.0 * braid.radius),
         None if chamber is None else chamber.law,
+        fibre.EA,
+        (1.0 if fibre.slack else 0.0) if fibre.stretch else None,
     )  # fmt: skip
 
 

@@ -1,7 +1,7 @@
 """The state at a material point, by name: what every pointwise function of the mechanics takes.
 
-A further field of the model (the roll of the fibres, their stretch) is one more name here. A rate that is integrated
-along the length takes a `Point` whose integrated part is None, since it must not depend on it.
+A further field of the model is one more name here; it is None where an effect is off. A rate that is integrated along
+the length takes a `Point` in which that integral, and what is integrated after it, is None: it must not depend on them.
 """
 
 from typing import Any, NamedTuple
@@ -21,6 +21,10 @@ class Point(NamedTuple):
     theta: Any  #: braid angle [rad] from the parallels
     psi: Any  #: slope angle of the meridian [rad]
     kappa: Any  #: its derivative psi' = d psi/dv [rad/m]
+    stretch: Any = None  #: stretch lambda of the fibres; None where they do not stretch
+    excess: Any = None  #: theta' beyond that of fibres that do not stretch, cot(theta) lambda'/lambda [rad/m]
+    roll: Any = None  #: angle phi [rad] by which a fibre's section turns about it; None where crossings hinder it
+    roll_rate: Any = None  #: its derivative phi' = d phi/dv [rad/m]
 
     @classmethod
     def cylinder(cls, theta: Number) -> "Point":

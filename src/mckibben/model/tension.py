@@ -6,27 +6,36 @@ sin(psi)/R0 keeps its two parts apart, w_c(r, s) that of the chamber and p the c
     q = -(p - dw_f/dtheta') cos(theta0) / (R0 sin(theta))
     N T sin(theta) = (F + pi r^2 P) cos(psi) + q sin(psi) - dw_c/ds
                      - [dw_f/dtheta - (dw_f/dtheta')'] sin(theta0) cos(theta)
+
+Fibres that roll have a dw_f/dtheta' that depends on kappa, phi and phi': its derivative needs psi'' and phi'', which
+follow from equilibrium, (dL/dkappa)' = dL/dpsi - p d(theta')/dpsi and (dL/dphi')' = dL/dphi.
 """
+
+from functools import reduce
 
 import jax
 import jax.numpy as jnp
 
-from mckibben.model.angle import cos, sin, slope
+from mckibben.model.angle import cos, radians, sin, slope
 from mckibben.model.chamber import chamber_pull
 from mckibben.model.energy import lagrangian
-from mckibben.model.fibres import fibre_densities
-from mckibben.model.kinematics import angle_rate, fibre_strains, radius
+from mckibben.model.fibres import axial_force, fibre_densities
+from mckibben.model.kinematics import angle_rate, fibre_strains, radius, stretch_rate
 from mckibben.model.parameters import Number, Parameters
 from mckibben.model.point import Point
 
 __all__ = ["conserved", "tension"]
 
 
-def tension(at: Point, costate: Number, F: Number, P: Number, p: Parameters) -> Number:
-    """Tension T [N] of one fibre, the multiplier of inextensibility, at force F [N] and pressure P [Pa]."""
-    sine, cosine = sin(p.theta0), cos(p.theta0)
-    u1 = fibre_strains(at, p)[0]
-    by_rate, by_rate_dv = p.N * p.B1 * u1, -2.0 * p.N * p.B1 * cosine / p.R0 * cos(at.psi) * at.kappa
+def tension(at: Point, costates: tuple[Number, ...], F: Number, P: Number, p: Parameters) -> Number:
+    """Tension T [N] of one fibre at force F [N] and pressure P [Pa], from the costates of what is integrated.
+
+    Of a fibre that stretches it is what its law gives; else it is the multiplier of inextensibility.
+    """
+    if at.stretch is not None:
+        return axial_force(at, p)
+    (costate,), sine, cosine = costates, sin(p.theta0), cos(p.theta0)
+    by_rate, by_rate_dv = _by_rate(at, costate, F, P, p)
     by_theta = slope(lambda t: sum(fibre_densities(at._replace(theta=t), p)), at.theta)
     q = -(costate - by_rate) * cosine / (p.R0 * sin(at.theta))
     axial = F + jnp.pi * radius(at, p) ** 2 * P
@@ -34,12 +43,55 @@ def tension(at: Point, costate: Number, F: Number, P: Number, p: Parameters) -> 
     return (along - (by_theta - by_rate_dv) * sine * cos(at.theta)) / (p.N * sin(at.theta))
 
 
-def conserved(at: Point, costate: Number, F: Number, P: Number, p: Parameters) -> tuple[Number, Number]:
-    """p theta' + kappa dL/dkappa - L [J/m], the same all along the length, and the sum of its terms' magnitudes."""
+def _by_rate(at: Point, costate: Number, F: Number, P: Number, p: Parameters) -> tuple[Number, Number]:
+    """dw_f/dtheta' [N m] and its derivative by v [N]."""
+    if at.roll is None:
+        u1 = fibre_strains(at, p)[0]
+        return p.N * p.B1 * u1, -2.0 * p.N * p.B1 * cos(p.theta0) / p.R0 * cos(at.psi) * at.kappa
+    (theta, psi, phi), rates = _plain(at), (at.kappa, at.roll_rate)
+
+    def moments(theta: Number, psi: Number, kappa: Number, phi: Number, phi_rate: Number) -> tuple[Number, ...]:
+        """dw_f/dtheta', and dL/dkappa and dL/dphi', whose derivatives by v are known from equilibrium."""
+
+        def bent(excess: Number) -> Number:
+            return sum(fibre_densities(Point(theta, psi, kappa, None, excess, phi, phi_rate), p))
+
+        def loaded(kappa: Number, phi_rate: Number) -> Number:
+            return lagrangian(Point(theta, psi, kappa, roll=phi, roll_rate=phi_rate), p, F, P)
+
+        return jax.grad(bent)(0.0 * theta), *jax.grad(loaded, (0, 1))(kappa, phi_rate)
+
+    def potential(psi: Number, phi: Number) -> Number:
+        turned = at._replace(theta=theta, psi=psi, roll=phi)
+        return lagrangian(turned, p, F, P) - costate * angle_rate(turned, p)
+
+    values, change = jax.linearize(moments, theta, psi, rates[0], phi, rates[1])
+    zero, one = jnp.zeros_like(theta), jnp.ones_like(theta)
+    known = change(angle_rate(at, p), at.kappa, zero, at.roll_rate, zero)
+    by_kappa, by_phi_rate = change(zero, zero, one, zero, zero), change(zero, zero, zero, zero, one)
+    turns = jax.grad(potential, (0, 1))(psi, phi)
+    (a, b), (c, d) = (by_kappa[1], by_phi_rate[1]), (by_kappa[2], by_phi_rate[2])
+    x, y = turns[0] - known[1], turns[1] - known[2]
+    bend, twist = (d * x - b * y) / (a * d - b * c), (a * y - c * x) / (a * d - b * c)  # psi'' and phi''
+    return values[0], known[0] + by_kappa[0] * bend + by_phi_rate[0] * twist
+
+
+def _plain(at: Point) -> tuple[Number, Number, Number]:
+    return radians(at.theta), radians(at.psi), radians(at.roll)
+
+
+def conserved(at: Point, costates: tuple[Number, ...], F: Number, P: Number, p: Parameters) -> tuple[Number, Number]:
+    """The sum of costates times rates, kappa dL/dkappa and phi' dL/dphi' less L [J/m], the same all along the length,
+    and the sum of its terms' magnitudes."""  # fmt: skip
 
     def of_kappa(kappa: Number) -> Number:
         return lagrangian(at._replace(kappa=kappa), p, F, P)
 
     value, by_kappa = jax.value_and_grad(of_kappa)(at.kappa)
-    parts = (costate * angle_rate(at, p), at.kappa * by_kappa, -value)
-    return sum(parts), jnp.abs(parts[0]) + jnp.abs(parts[1]) + jnp.abs(parts[2])
+    parts = [costates[0] * angle_rate(at, p), at.kappa * by_kappa, -value]
+    if at.stretch is not None:
+        parts.append(costates[1] * stretch_rate(at, p))
+    if at.roll is not None:
+        by_twist = jax.grad(lambda rate: lagrangian(at._replace(roll_rate=rate), p, F, P))(at.roll_rate)
+        parts.append(at.roll_rate * by_twist)
+    return sum(parts), reduce(jnp.add, map(jnp.abs, parts))

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any
 import attrs
 import numpy as np
 
-from mckibben.results.variables import COORDINATES, STEP, VARIABLES, about_variable, dimensions
+from mckibben.results.variables import COORDINATES, OPTIONAL, STEP, VARIABLES, about_variable, dimensions
 from mckibben.results.verdict import Modes, Verdict
 from mckibben.spec import Muscle, Test
 from mckibben.spec.text import to_toml
@@ -38,12 +38,14 @@ class Table:
 
 
 def dataset(steps: dict[str, Any], fields: dict[str, np.ndarray], v: np.ndarray, about: dict[str, Any]) -> xr.Dataset:
-    """The Dataset of a result; every declared variable must be given."""
+    """The Dataset of a result; every declared variable must be given, but those that only some muscles have."""
     import xarray as xr  # here, because it takes half a second to import
 
     values = steps | fields | {"step": np.arange(len(steps["length"])), "v": v}
     variables: dict[str, Any] = {}
     for name in VARIABLES | COORDINATES:
+        if name in OPTIONAL and name not in values:
+            continue
         array = np.asarray(values[name])
         array.flags.writeable = False
         variables[name] = (dimensions(name), array, about_variable(name))

@@ -1,5 +1,9 @@
 """The variables of a result, each declared once with its unit and meaning. Files, plots and the reference use them."""
 
+from collections.abc import Callable
+
+from mckibben.spec import Joint, Muscle
+
 STEP: dict[str, tuple[str, str]] = {
     "length": ("m", "distance between the fittings"),
     "contraction": ("1", "contraction 1 - h/H0, positive when shorter"),
@@ -10,6 +14,7 @@ STEP: dict[str, tuple[str, str]] = {
     "energy_bending_2": ("J", "fibre energy, bending normal to the surface"),
     "energy_twist": ("J", "fibre energy, twist"),
     "energy_chamber": ("J", "energy of the chamber"),
+    "energy_stretch": ("J", "fibre energy, stretch"),
     "energy": ("J", "stored energy"),
     "work": ("J", "work done on the muscle since the first state"),
     "verdict": ("", "verdict"),
@@ -45,6 +50,9 @@ FIELDS: dict[str, tuple[str, str]] = {
     "density_fibres": ("J/m", "fibre energy per unit v"),
     "density_chamber": ("J/m", "energy of the chamber per unit v"),
     "fibre_tension": ("N", "tension of one fibre"),
+    "fibre_stretch": ("1", "stretch of the fibres"),
+    "density_stretch": ("J/m", "fibre energy per unit v, stretch"),
+    "roll": ("rad", "angle by which a fibre's section has turned about the fibre"),
     "share_mesh": ("1", "share of the axial load F + pi r^2 P carried by the mesh"),
     "share_chamber": ("1", "share of the axial load F + pi r^2 P carried by the chamber"),
 }
@@ -68,6 +76,20 @@ EXTREMES: dict[str, tuple[str, str]] = {
     "safety_factor": ("1", "breaking force of a fibre over its largest tension"),
 }
 """What tables show of a state's fields: unit and meaning. A muscle without a breaking force has no safety factor."""
+
+OPTIONAL: dict[str, Callable[[Muscle], bool]] = {
+    "energy_stretch": lambda muscle: muscle.braid.fibre.stretch,
+    "fibre_stretch": lambda muscle: muscle.braid.fibre.stretch,
+    "density_stretch": lambda muscle: muscle.braid.fibre.stretch,
+    "roll": lambda muscle: muscle.braid.joint == Joint.PIN,
+}
+"""Variables that only some muscles have."""
+
+
+def has(muscle: Muscle, name: str) -> bool:
+    """Whether results of a muscle have a variable."""
+    return name not in OPTIONAL or OPTIONAL[name](muscle)
+
 
 VARIABLES = STEP | FIELDS
 COORDINATES = {"step": ("", "state"), "v": ("m", "axial material coordinate")}

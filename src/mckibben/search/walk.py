@@ -1,11 +1,13 @@
 """Where a path of states ends, and why: stability lost, the wall behind its fitting, or contact with itself."""
 
+import math
+
 import attrs
 import numpy as np
 
 from mckibben.measure.judge import Judgement, clearance, judge, shape_of
 from mckibben.measure.meridian import meridian
-from mckibben.model.extension import full_extension
+from mckibben.model.extension import longest_of
 from mckibben.results.verdict import Modes, Shape, Verdict
 from mckibben.solver.equilibrium import Equilibrium
 from mckibben.solver.find import embedded, find
@@ -13,6 +15,8 @@ from mckibben.solver.held import Held
 from mckibben.solver.problem import Problem
 from mckibben.solver.stability import count_modes, of_states
 
+FAR = 1.5
+"""Length of a muscle over that of a fibre as made beyond which no force is looked for."""
 STEPS = 16
 """Steps from one end of a path to the other at first."""
 JUMP = 0.6
@@ -161,7 +165,7 @@ def branch_end(
 def _by_length(walk: _Walk, first: Equilibrium) -> _Walk:
     """The walk to a force as one to a length: stable under force control, a muscle is shorter the more it is pushed."""
     p, force = walk.problem.p, walk.target.get("force")
-    longest = full_extension(float(p.R0), float(p.H0), float(p.theta0), walk.problem.basis.ends)
+    longest = min(longest_of(p, walk.problem.basis.ends), FAR * float(p.H0) / math.sin(float(p.theta0)))
     far = 0.1 * float(p.H0) if force < first.force else first.length + (1.0 - 1e-6) * (longest - first.length)
     pressure = walk.target.get("pressure")
     lengths = [Held.of(length=length, pressure=pressure) for length in (first.length, far)]

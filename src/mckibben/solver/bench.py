@@ -8,7 +8,7 @@ import numpy as np
 from mckibben.discretise.bspline import Spline
 from mckibben.discretise.placement import crowding
 from mckibben.discretise.spectral import Line
-from mckibben.model.extension import full_extension
+from mckibben.model.extension import longest_of
 from mckibben.model.parameters import Parameters, parameters
 from mckibben.solver.held import Held
 from mckibben.solver.problem import Basis, Problem
@@ -31,14 +31,19 @@ class Bench:
     """A muscle on the bench."""
 
     p: Parameters
-    ends: str
-    longest: float  #: full extension [m]
+    line: Line  #: of one unknown, with what the fibres may do
+    longest: float  #: full extension [m], infinite where the fibres stretch
 
     @classmethod
     def of(cls, muscle: Muscle) -> "Bench":
         """From the specification."""
-        p, ends = parameters(muscle), str(muscle.ends)
-        return cls(p, ends, full_extension(float(p.R0), float(p.H0), float(p.theta0), ends))
+        p, line = parameters(muscle), Line.of(muscle, 1)
+        return cls(p, line, longest_of(p, line.ends))
+
+    @property
+    def ends(self) -> str:
+        """What the fittings hold."""
+        return self.line.ends
 
     def problem(self, size: int, b: float, discretisation: str = "spectral", modes: Any = "odd") -> Problem:
         """The muscle on a discretisation."""
@@ -46,7 +51,12 @@ class Bench:
 
     def basis(self, size: int, discretisation: str = "spectral", modes: Any = "odd") -> Basis:
         """The discretisation."""
-        return Spline(size, self.ends) if discretisation == "paper" else Line(size, self.ends, modes)
+        if discretisation != "paper":
+            return attrs.evolve(self.line, size=size, modes=modes)
+        if self.line.stretch or self.line.roll:
+            said = "is the paper's own mesh, whose fibres neither stretch nor roll"
+            raise SpecError("discretisation", discretisation, said, 'use "spectral", or leave the effect out')
+        return Spline(size, self.ends)
 
     def placement(self, held: Held) -> float:
         """Crowding of points for one state."""

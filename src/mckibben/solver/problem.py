@@ -67,14 +67,19 @@ class Setting(NamedTuple):
 def setting(basis: Basis, p: Parameters, b: Number) -> Setting:
     """Units, points and norms.
 
-    The norm of a step is mean(dpsi^2) + (0.05 H0)^2 mean(dkappa^2), so that short waves count. The part of theta that
-    is itself unknown (free ends, splines) counts by its mean square.
+    The norm of a step is mean(dpsi^2) + (0.05 H0)^2 mean(dkappa^2), so that short waves count, and likewise for further
+    fields. The part of theta that is itself unknown (free ends, splines) counts by its mean square.
     """
     on, operators = place(basis, p, b), basis.operators()
     weight = operators.weights * on.jacobian / (operators.weights @ on.jacobian)
     slope, bend = slopes(basis, on), slopes(basis, on, 1)
-    lift = jnp.asarray(operators.lift)
+    lift = jnp.asarray(operators.lifts[0])
     norm = (slope.T * weight) @ slope + (0.05 * p.H0) ** 2 * ((bend.T * weight) @ bend) + (lift.T * weight) @ lift
+    for order, field in zip(basis.form.orders[2:], operators.fields[2:], strict=True):
+        part = jnp.asarray(field) / on.jacobian[:, None] ** order
+        norm = norm + (0.05 * p.H0) ** (2 * order) * ((part.T * weight) @ part)
+    for other in operators.lifts[1:]:
+        norm = norm + (other.T * weight) @ other
     return Setting(on.unit, jnp.asarray(basis.coordinate(operators.x, p, b)), norm, slope)
 
 

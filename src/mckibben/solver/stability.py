@@ -25,18 +25,18 @@ __all__ = ["Tangents", "binding", "count_modes", "negative", "null_space", "stif
 
 
 class Tangents(NamedTuple):
-    """Tangents of states: symmetric (or full) with the gradients, antisymmetric with its one condition, or none."""
+    """Tangents of states: symmetric (or full) with the gradients, antisymmetric with its conditions, or none."""
 
     stiffness: Float[Array, "*n m m"]
     gradients: Float[Array, "*n l m"]
     antisymmetric: Float[Array, "*n a a"]
-    closure: Float[Array, "*n a"]
+    closure: Float[Array, "*n c a"]
 
 
 def stiffnesses(basis: Basis, on: Placed, local: Local, s: System, together: bool = False) -> Tangents:
     """Of one state, from its pointwise derivatives."""
     if not basis.half:
-        return Tangents(s.stiffness, s.gradients, jnp.zeros((0, 0)), jnp.zeros(0))
+        return Tangents(s.stiffness, s.gradients, jnp.zeros((0, 0)), jnp.zeros((1, 0)))
     return Tangents(
         s.stiffness, s.gradients, stiffness(basis.even(), on, local, together), closing(basis, on, local)
     )  # fmt: skip
@@ -74,8 +74,8 @@ def count_modes(problem: Problem, t: Tangents, pressure_held: bool = True) -> li
     always = ([] if pressure_held else [1]) + ([2] if problem.basis.closes else [])
     lengths, forces = (negative(t.stiffness, t.gradients[:, rows]) for rows in ([0, *always], always))
     sideways: list[Any] = [(None, None)] * len(t.stiffness)
-    if t.closure.shape[1]:
-        sideways = negative(t.antisymmetric, t.closure[:, None])
+    if t.closure.shape[2]:
+        sideways = negative(t.antisymmetric, t.closure)
     return [
         Modes(length, force, anti, soft_length, soft_force, soft_anti)
         for (length, soft_length), (force, soft_force), (anti, soft_anti) in zip(lengths, forces, sideways, strict=True)
@@ -84,7 +84,7 @@ def count_modes(problem: Problem, t: Tangents, pressure_held: bool = True) -> li
 
 def weakest(t: Tangents) -> tuple[np.ndarray, float]:
     """The softest antisymmetric mode of the first state, in coefficients of the even modes, and its stiffness."""
-    closure = np.asarray(t.closure[0])[None]
+    closure = np.asarray(t.closure[0])
     null = null_space(closure[binding(closure)])
     values, vectors = np.linalg.eigh(null.T @ np.asarray(t.antisymmetric[0]) @ null)
     return np.asarray(null @ vectors[:, 0]), float(values[0])

@@ -3,11 +3,13 @@
 The Lagrangian L of `model.energy` is differentiated at the points, by the local variables x = (i, y) of a
 discretisation, and carried to the unknowns by the chain rule. With A = di/du, which is swept over the length:
 
-    gradient = A^T (w L_i) + sum_k O_k^T (w L_k),   A = lift + C diag(J d(rate)/dy) O
+    gradient = A^T (w L_i) + sum_k O_k^T (w L_k),   A = lift + C diag(J d(rate)/dx) dx/du
 
-and its derivative likewise, plus costate times d2(rate)/dy2, costate = C^T (w L_i).
+and its derivative likewise, plus costate times d2(rate)/dx2. The costate of an integral is C^T (w L_i), L_i with what
+the rates of later integrals owe to it.
 """
 
+from functools import partial
 from typing import Any, NamedTuple
 
 import jax
@@ -15,7 +17,7 @@ import jax.numpy as jnp
 from jaxtyping import Float
 
 from mckibben.compiled.arrays import Array
-from mckibben.discretise.fields import Placed, Variables, known, variables
+from mckibben.discretise.fields import Integral, Placed, Variables, known, variables
 from mckibben.discretise.products import pairs, sandwich, swept
 from mckibben.model.angle import Known
 from mckibben.model.energy import remember, stored, works
@@ -52,8 +54,8 @@ class Local(NamedTuple):
     second: tuple[tuple[Array, ...], ...]  #: of L by pairs of them, the upper triangle
     works: tuple[Array, ...]  #: densities of length, volume and closure: (q) each
     works_first: tuple[tuple[Array, ...], ...]  #: for each local variable, their derivatives by it
-    turns: tuple[Array, ...]  #: J d(rate)/dy of the fields on which the rate depends
-    bends: tuple[tuple[Array, ...], ...]  #: J d2(rate)/dy2, the upper triangle
+    turns: tuple[tuple[Array, ...], ...]  #: for each integral, J d(rate)/dx of what the rate depends on
+    bends: tuple[tuple[tuple[Array, ...], ...], ...]  #: J d2(rate)/dx2, the upper triangle
 
 
 class System(NamedTuple):
@@ -70,7 +72,7 @@ def localise(basis: Any, on: Placed, state: Unknowns, share: Number = 1.0) -> Lo
     form, p, unit = basis.form, on.p, on.unit
     x = variables(basis, on, state.u)
     weight = jnp.asarray(basis.operators().weights) * on.jacobian
-    count, rated = len(x), form.rated
+    count = len(x)
 
     def at(values: Variables, near: Variables) -> Variables:
         """Local variables with other values, whose sines and cosines are known."""
@@ -104,32 +106,32 @@ def localise(basis: Any, on: Placed, state: Unknowns, share: Number = 1.0) -> Lo
         found, change = jax.linearize(densities, *values)
         return found, tuple(change(*(jnp.full_like(v, i == k) for k, v in enumerate(values))) for i in range(count))
 
-    def turning(near: Variables) -> tuple[tuple[Array, ...], tuple[tuple[Array, ...], ...]]:
+    def turning(near: Variables, one: Integral) -> tuple[tuple[Array, ...], tuple[tuple[Array, ...], ...]]:
         values = plain(near)
 
         def rate(*some: Number) -> Number:
             every = list(values)
-            for k, value in zip(rated, some, strict=True):
+            for k, value in zip(one.by, some, strict=True):
                 every[k] = value
-            return form.rate(at(tuple(every), near), p)
+            return one.rate(at(tuple(every), near), p)
 
-        some = tuple(values[k] for k in rated)
-        first, change = jax.linearize(jax.grad(rate, tuple(range(len(rated)))), *some)
+        some = tuple(values[k] for k in one.by)
+        first, change = jax.linearize(jax.grad(rate, tuple(range(len(some)))), *some)
         second = [change(*(jnp.full_like(value, i == k) for k, value in enumerate(some))) for i in range(len(some))]
         return tuple(first), tuple(tuple(row[i:]) for i, row in enumerate(second))
 
     near = known(form, x)
     value, first, second = jax.vmap(slopes)(near, state.memory)
     done, done_first = jax.vmap(working)(near)
-    turns, bends = jax.vmap(turning)(near[1:]) if rated else ((), ())
+    turned = [jax.vmap(partial(turning, one=one))(near) if one.by else ((), ()) for one in form.integrals]
     return Local(
         weight * value,
         tuple(weight * f for f in first),
         tuple(tuple(weight * f for f in row) for row in second),
         tuple(weight * f for f in done),
         tuple(tuple(weight * f for f in row) for row in done_first),
-        tuple(on.jacobian * f for f in turns),
-        tuple(tuple(on.jacobian * f for f in row) for row in bends),
+        tuple(tuple(on.jacobian * f for f in turns) for turns, _ in turned),
+        tuple(tuple(tuple(on.jacobian * f for f in row) for row in bends) for _, bends in turned),
     )
 
 
@@ -146,51 +148,78 @@ def system(basis: Any, on: Placed, state: Unknowns, together: bool = False) -> S
     return assemble(basis, on, localise(basis, on, state), len(state.loads), together)
 
 
+def _costates(basis: Any, local: Local, first: tuple[Array, ...]) -> tuple[tuple[Array, ...], tuple[Array, ...]]:
+    """Costate of each integral, and the derivatives `first` of a density with what the rates owe to each variable."""
+    form, operators = basis.form, basis.operators()
+    costates: list[Any] = [None] * len(form.integrals)
+    owed = list(first)
+    for k in reversed(range(len(form.integrals))):
+        if form.integrals[k].by:
+            costates[k] = owed[k] @ operators.cumulate
+            for turn, j in zip(local.turns[k], form.integrals[k].by, strict=True):
+                owed[j] = owed[j] + turn * costates[k]
+    return tuple(costates), tuple(owed)
+
+
 def _gradient(basis: Any, on: Placed, local: Local, first: tuple[Array, ...]) -> Float[Array, " m"]:
     """Gradient by the unknowns of a total whose densities have the weighted derivatives `first`."""
-    operators, form = basis.operators(), basis.form
-    integrated, *fields = first
-    by_fields = [f / on.jacobian**order if order else f for f, order in zip(fields, form.orders, strict=True)]
-    if form.rated:
-        back = integrated @ operators.cumulate
-        for turn, k in zip(local.turns, form.rated, strict=True):
-            by_fields[k] = by_fields[k] + turn * back
-    parts = [f @ jnp.asarray(part) for f, part in zip(by_fields, operators.fields, strict=True)]
-    return sum(parts, integrated @ jnp.asarray(operators.lift))
+    operators, form, n = basis.operators(), basis.form, len(basis.form.integrals)
+    _, owed = _costates(basis, local, first)
+    scaled = [f / on.jacobian**order if order else f for f, order in zip(owed[n:], form.orders, strict=True)]
+    parts = [f @ jnp.asarray(part) for f, part in zip(scaled, operators.fields, strict=True)]
+    first_of_all, *more = [owed[k] @ jnp.asarray(lift) for k, lift in enumerate(operators.lifts)]
+    return sum([*parts, *more], first_of_all)
 
 
 def stiffness(basis: Any, on: Placed, local: Local, together: bool = False) -> Float[Array, "m m"]:
     """Second derivatives of the Lagrangian by the unknowns of a space, which need not be that of the state."""
-    operators, form = basis.operators(), basis.form
-    across, *own = local.second
+    operators, form, n = basis.operators(), basis.form, len(basis.form.integrals)
+    costates, _ = _costates(basis, local, local.first)
+    second = {(i, i + k): f for i, row in enumerate(local.second) for k, f in enumerate(row)}
+    for one, bends, costate in zip(form.integrals, local.bends, costates, strict=True):
+        for a, i in enumerate(one.by):
+            for b, j in enumerate(one.by[a:]):
+                second[i, j] = second[i, j] + bends[a][b] * costate
     scaled = [on.jacobian**-order if order else None for order in form.orders]
 
     def over(number: Array, k: int) -> Array:
         scale = scaled[k]
         return number if scale is None else number * scale
 
-    squares = {(i, j): over(over(own[i][j - i], i), j) for i, j in pairs(len(own))}
-    if form.rated:
-        costate = local.first[0] @ operators.cumulate
-        for a, i in enumerate(form.rated):
-            for b, j in enumerate(form.rated[a:]):
-                squares[i, j] = squares[i, j] + local.bends[a][b] * costate
-    A = swept(basis, list(local.turns), together)
-    side = 0.5 * across[0][:, None] * A
-    for k, part in enumerate(operators.fields):
-        side = side + over(across[1 + k], k)[:, None] * part
-    mixed = A.T @ side
-    return sandwich(basis, [squares[pair] for pair in pairs(len(own))], together) + mixed + mixed.T
+    tables = swept(basis, local.turns, on.jacobian, together)
+    coupled = []
+    for i, A in enumerate(tables):
+        side = 0.5 * second[i, i][:, None] * A
+        for j in range(i + 1, n):
+            side = side + second[i, j][:, None] * tables[j]
+        for k, part in enumerate(operators.fields):
+            side = side + over(second[i, n + k], k)[:, None] * part
+        coupled.append(A.T @ side)
+    mixed = sum(coupled[1:], coupled[0])
+    squares = [over(over(second[n + i, n + j], i), j) for i, j in pairs(len(form.orders))]
+    return sandwich(basis, squares, together) + mixed + mixed.T
 
 
-def closing(basis: Any, on: Placed, local: Local) -> Float[Array, " a"]:
-    """Condition on antisymmetric disturbances of a half line: the radius at its end is that of the other end.
+def closing(basis: Any, on: Placed, local: Local) -> Float[Array, "c a"]:
+    """Conditions on antisymmetric disturbances of a half line: what is integrated does not change at mid-length.
 
-    The integrated variable is zero at mid-length, so its change over half the length, and that at a free end, vanish.
+    The braid angle there changes by its turn at the first end and by its rate over half the length. Where fibres
+    stretch, the radius does not change there either, which is held at the first end; at a free one it is the stretch
+    that is told by its turn and its rate.
     """
     even = basis.even()
-    change = 0.5 * _gradient(even, on, local, tuple(f[2] for f in local.works_first))
-    return change + jnp.asarray(even.operators().lift[0])
+    form, lifts = even.form, even.operators().lifts
+    half = jnp.asarray(even.operators().weights) / 2.0
+
+    def at_middle(k: int) -> Array:
+        turns = dict(zip(form.integrals[k].by, local.turns[k], strict=True))
+        first = tuple(half * turns[j] if j in turns else 0.0 * half for j in range(len(local.first)))
+        return _gradient(even, on, local, first) + jnp.asarray(lifts[k][0])
+
+    closure = 0.5 * _gradient(even, on, local, tuple(f[2] for f in local.works_first))
+    if len(form.integrals) == 1:
+        return (closure + jnp.asarray(lifts[0][0]))[None]
+    return jnp.stack([at_middle(0), at_middle(1) if even.ends == "free" else closure])
 
 
 def remembered(basis: Any, on: Placed, state: Unknowns) -> Unknowns:

@@ -17,7 +17,7 @@ from mckibben.spec.loading import (
     Step,
     Test,
 )
-from mckibben.spec.muscle import Braid, Chamber, Ends, Fibre, Muscle
+from mckibben.spec.muscle import Braid, Chamber, Ends, Fibre, Joint, Muscle
 from mckibben.spec.path import Path, PathMode
 from mckibben.spec.reference import reference_markdown
 
@@ -37,6 +37,7 @@ __all__ = [
     "Isobaric",
     "Isometric",
     "Isotonic",
+    "Joint",
     "Law",
     "MooneyRivlin",
     "Muscle",

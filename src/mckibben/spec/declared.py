@@ -62,6 +62,8 @@ class Declared:
     """Says a value in full where the plain number is open to mistakes."""
     static: bool = False
     """True for a number that decides what is computed (how many states) and cannot be varied a little."""
+    quiet: bool = False
+    """True for an effect that is not mentioned where it is off: files and tables say what is there."""
 
     @property
     def required(self) -> bool:
@@ -86,6 +88,10 @@ class Declared:
         if most == math.inf:
             return ""
         return f"{self.text(least)} to {self.text(most)}" if least else f"up to {self.text(most)}"
+
+    def mentioned(self, value: Any) -> bool:
+        """Whether a value is worth a line in a file or a table."""
+        return self.stored and not (self.quiet and value == self.default)
 
     def text(self, value: float) -> str:
         return f"{value:.0f}" if self.kind == "count" else show(value, self.display or self.unit)
@@ -150,7 +156,7 @@ def walk(value: Any, prefix: str = "") -> Iterator[tuple[str, Declared, Any]]:
         item = getattr(value, declared.name)
         if declared.kind == "part" and item is not None:
             yield from walk(item, f"{prefix}{declared.name}.")
-        elif declared.stored:
+        elif declared.mentioned(item):
             yield prefix + declared.name, declared, item
 
 
@@ -194,8 +200,11 @@ def as_call(self: Any) -> str:
 
 def in_own_words(value: Any) -> dict[str, Any]:
     """The fields of a spec object that say it: those that are stored, an angle as the braid's own words have it."""
-    names = [declared.name for declared in describe(type(value)) if declared.stored]
-    said = {name: getattr(value, name) for name in names}
+    said = {
+        declared.name: getattr(value, declared.name)
+        for declared in describe(type(value))
+        if declared.mentioned(getattr(value, declared.name))
+    }
     return said | as_written(said["angle"], value.measured_from) if hasattr(value, "measured_from") else said
 
 

@@ -29,6 +29,7 @@ __all__ = [
     "read_quantity",
     "spec",
     "spec_classes",
+    "switch",
     "words",
 ]
 
@@ -158,7 +159,23 @@ def words(*, meaning: str, many: bool = False, default: Any = None) -> Any:
     return declare(Declared(kind="names" if many else "text", read=_read_words, meaning=meaning, default=default))
 
 
-def choice(options: type[StrEnum], *, meaning: str, default: Any = attrs.NOTHING, stored: bool = True) -> Any:
+def _read_switch(value: Any, field: str, declared: Declared) -> bool:
+    if isinstance(value, bool):
+        return value
+    raise SpecError(field, value, "must be true or false", "without quotes in a file; True or False in Python")
+
+
+def switch(*, meaning: str, source: str = "", default: bool = False) -> Any:
+    """An effect that is on or off; off unless said."""
+    return declare(
+        Declared(kind="switch", read=_read_switch, meaning=meaning, source=source, default=default, quiet=True)
+    )
+
+
+def choice(
+    options: type[StrEnum], *, meaning: str, default: Any = attrs.NOTHING, stored: bool = True, quiet: bool = False,
+    source: str = "",
+) -> Any:  # fmt: skip
     """One word out of an enumeration; the value compares equal to the word."""
 
     def read(value: Any, field: str, declared: Declared) -> StrEnum:
@@ -168,7 +185,12 @@ def choice(options: type[StrEnum], *, meaning: str, default: Any = attrs.NOTHING
         raise SpecError(field, value, f"must be {declared.allowed}", advice)
 
     names = tuple(str(option) for option in options)
-    return declare(Declared(kind="choice", read=read, meaning=meaning, options=names, default=default, stored=stored))
+    return declare(
+        Declared(
+            kind="choice", read=read, meaning=meaning, options=names, default=default, stored=stored, quiet=quiet,
+            source=source,
+        )
+    )  # fmt: skip
 
 
 def _read_part(value: Any, field: str, declared: Declared) -> Any:
@@ -184,7 +206,9 @@ def part(*kinds: type, meaning: str, default: Any = attrs.NOTHING) -> Any:
     return declare(Declared(kind="part", read=_read_part, meaning=meaning, parts=kinds, default=default))
 
 
-@dataclass_transform(frozen_default=True, field_specifiers=(quantity, quantities, count, choice, words, part, declare))
+@dataclass_transform(
+    frozen_default=True, field_specifiers=(quantity, quantities, count, choice, switch, words, part, declare)
+)
 def spec(path: str) -> Callable[[type[T]], type[T]]:
     """Class decorator: an immutable value class whose errors name its fields as `path`.name."""
 

@@ -12,12 +12,12 @@ from mckibben.spec.angle import AngleFrom, both_ways, from_parallels, tendency
 from mckibben.spec.change import changed_muscle
 from mckibben.spec.declared import Reads, walk
 from mckibben.spec.errors import SpecError, nearest
-from mckibben.spec.fields import choice, count, part, quantity, spec, words
+from mckibben.spec.fields import choice, count, part, quantity, spec, switch, words
 from mckibben.spec.laws import LAWS, Law
 from mckibben.spec.limits import BENDING, check_angle, check_muscle
 from mckibben.units import Number, is_traced, show
 
-__all__ = ["Braid", "Chamber", "Ends", "Fibre", "Muscle", "Natural"]
+__all__ = ["Braid", "Chamber", "Ends", "Fibre", "Joint", "Muscle", "Natural"]
 
 
 class Ends(StrEnum):
@@ -41,6 +41,21 @@ class Ends(StrEnum):
     FREE = "free"
 
 
+class Joint(StrEnum):
+    """What holds two fibres together where they cross.
+
+    HINGE: they share the normal of the surface and turn about it alone, as a scissors joint does: the paper's.
+    PIN: they share the position alone, as a ball joint does: a fibre may also roll about its own axis.
+
+    >>> muscle = mk.presets.paper().replace("braid.joint", "pin")
+    >>> muscle.braid.joint == mk.Joint.PIN == "pin"
+    True
+    """
+
+    HINGE = "hinge"
+    PIN = "pin"
+
+
 class Natural(StrEnum):
     """The shape of a fibre without stress: the helix of the braid as made, or a straight rod."""
 
@@ -52,6 +67,7 @@ _ROUND = ("diameter", "E", "nu")
 """What a round solid fibre is given by."""
 _GIVEN = ("B1", "B2", "B3")
 """What a fibre of any section is given by."""
+_STRETCH = "theory page, stretch of the fibres"
 _ENERGY = "Eqs. (20-28)"
 """Source of the stiffnesses: the energy of the paper."""
 
@@ -61,7 +77,8 @@ class Fibre:
     """One fibre: round and solid (diameter, E, nu), or any section by its stiffnesses (B1, B2, B3).
 
     A round solid fibre has B1 = B2 = E pi d^4/64 and B3 = G pi d^4/32 with G = E/(2 (1 + nu)). The energy that B1, B2,
-    B3 multiply is Eq. (20) of the paper. Fibres do not stretch. Give all of one way and nothing of the other.
+    B3 multiply is Eq. (20) of the paper. Give all of one way and nothing of the other. The paper's fibres do not
+    stretch; with `stretch` they do, by T = EA (lambda - 1) at stretch lambda (theory page).
 
     Args:
         diameter: diameter d of the fibre [m]. Beside B1, B2, B3 it may be given too; it then serves only to check that
@@ -73,9 +90,13 @@ class Fibre:
         B3: torsional stiffness [N m^2].
         breaking_force: tension that breaks one fibre [N]. Only compared with the tension found: see `cautions`.
         natural: shape of the fibre without stress, "helical" (as braided, the paper's) or "straight".
+        stretch: True if the fibres stretch; False is the paper's.
+        axial_stiffness: EA [N], tension over strain; of a round solid fibre it is E pi d^2/4 where it is not given.
+        slack: True if a fibre that stretches carries no compression, as yarns do.
 
     Raises:
-        SpecError: for a value out of range, both ways at once, or half of one.
+        SpecError: for a value out of range, both ways at once, or half of one; for a stretching fibre whose EA is
+            unknown, or an axial stiffness of one that does not stretch.
 
     >>> fibre = mk.Fibre(diameter="0.25 mm", E="3 GPa", nu=0.4)
     >>> [round(1e6 * B, 3) for B in fibre.stiffnesses]  # in N mm^2
@@ -113,6 +134,14 @@ class Fibre:
         "N", meaning="tension that breaks one fibre", low=0.0, low_open=True, size=(1e-9, 1e9), default=None
     )
     natural: Reads[Natural] = choice(Natural, meaning="shape of the fibre without stress", default=Natural.HELICAL)
+    stretch: Reads[bool] = switch(meaning="whether the fibres stretch", source=_STRETCH, default=False)
+    axial_stiffness: Reads[float | None] = quantity(
+        "N", meaning="axial stiffness EA of one fibre", low=0.0, low_open=True, size=(1e-6, 1e12), source=_STRETCH,
+        default=None,
+    )  # fmt: skip
+    slack: Reads[bool] = switch(
+        meaning="whether a fibre that stretches carries no compression", source=_STRETCH, default=False
+    )
 
     def __attrs_post_init__(self) -> None:
         given = [name for name in _GIVEN if getattr(self, name) is not None]
@@ -126,6 +155,18 @@ class Fibre:
             other = "diameter, E, nu" if given else "B1, B2, B3"
             said = f"{' and '.join(missing)} missing"
             raise SpecError("braid.fibre", allowed=said, advice=f"give all of {', '.join(way)} (or instead {other})")
+        self._check_stretch()
+
+    def _check_stretch(self) -> None:
+        """Raise for an axial stiffness or slack without stretch, or stretch without stiffness."""
+        if self.stretch and self.B1 is not None and self.axial_stiffness is None:
+            said = "is missing: B1, B2, B3 do not tell how stiff a fibre is along its length"
+            raise SpecError("braid.fibre.axial_stiffness", allowed=said, advice="give EA, such as 147 N")
+        idle = [name for name in ("axial_stiffness", "slack") if getattr(self, name)] if not self.stretch else []
+        if idle:
+            said = "means something only for fibres that stretch"
+            advice = "set stretch to true, or leave it out"
+            raise SpecError(f"braid.fibre.{idle[0]}", getattr(self, idle[0]), said, advice)
 
     @property
     def is_round(self) -> bool:
@@ -143,12 +184,22 @@ class Fibre:
         bending = self.E * math.pi * self.diameter**4 / 64.0
         return bending, bending, bending / (1.0 + self.nu)
 
+    @property
+    def EA(self) -> Number | None:  # noqa: N802
+        """Axial stiffness [N], as given or E pi d^2/4; None for a fibre that does not stretch."""
+        if not self.stretch or self.axial_stiffness is not None:
+            return self.axial_stiffness
+        assert self.diameter is not None
+        assert self.E is not None
+        return self.E * math.pi * self.diameter**2 / 4.0
+
 
 @spec("braid")
 class Braid:
     """The tube of helical fibres, half of each hand, as made: every length and angle is that of the reference state.
 
-    Fibres are evenly spaced helices that cross at hinges (the paper's section II; radius and angle: Eq. 11).
+    Fibres are evenly spaced helices that do not slide where they cross (the paper's section II; radius and angle: Eq.
+    11).
 
     Args:
         radius: radius R0 of the fibres' centre lines [m].
@@ -157,6 +208,7 @@ class Braid:
             the tube). Above 35.26 deg a long muscle contracts under pressure, below it extends (Eq. 31).
         fibres: number N of fibres, both hands together: even.
         fibre: what one fibre is, a `Fibre`.
+        joint: what holds fibres together where they cross, a `Joint`: "hinge" (the paper's) or "pin".
         angle_from: "axis" if the angle given is measured from the tube's axis, as in many other papers. It is
             converted: the `angle` of the braid is always from the parallels. What it was given from is remembered
             (`measured_from`): an angle given anew, by `Muscle.replace` or a sweep, means the same.
@@ -188,6 +240,10 @@ class Braid:
         meaning="number N of fibres, both hands together; even", low=2, high=100_000, advice="count both hands"
     )
     fibre: Fibre = part(Fibre, meaning="what one fibre is")
+    joint: Reads[Joint] = choice(
+        Joint, meaning="what holds fibres together where they cross", default=Joint.HINGE, quiet=True,
+        source="theory page, roll of the fibres",
+    )  # fmt: skip
     angle_from: Reads[AngleFrom] = choice(
         AngleFrom, meaning="what the given angle is measured from", default=AngleFrom.PARALLELS, stored=False
     )

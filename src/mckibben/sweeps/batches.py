@@ -54,7 +54,7 @@ def solve_together(
     with ThreadPoolExecutor(threads) as pool:
         close = CLOSE * math.sqrt(tolerance)
         for size in (size for size in sizes_for("spectral", tolerance) if size <= LARGEST):
-            line = Line(size, group.ends)
+            line = attrs.evolve(group.line, size=size)
             paths = finer(pool, followed(pool, group.take(left), line, close), close)
             coarse = []
             for solved, where in _read(pool, paths):
@@ -104,7 +104,7 @@ def _arranged(paths: Paths, found: Appraised, some: np.ndarray, good: np.ndarray
 
     seen = {name: by_design(values) for name, values in found.numbers.items()}
     group = paths.group.take(where)
-    stretched = seen["length"] > STRETCHED * surely_reached(group.p, group.ends)[:, None]
+    stretched = seen["length"] > STRETCHED * surely_reached(group.p, group.line.ends)[:, None]
     seen["error_estimate"] = error_bound(seen["conserved_variation"], seen["coefficient_tail"], stretched)
     loads, slope, sideways = (by_design(rows) for rows in (found.force, found.largest_slope, found.antisymmetric))
     plain = sideways & (slope < PLAIN_SLOPE) & (loads | (paths.group.held[0] == "length"))

@@ -13,6 +13,7 @@ import attrs
 import jax
 import numpy as np
 
+from mckibben.discretise.spectral import Line
 from mckibben.model.parameters import Parameters, numbers
 from mckibben.spec import Along, BlockedForce, Braid, CustomLaw, Ends, Muscle, Path, Protocol, SpecError, Step, Test
 from mckibben.spec import numbers as leaves_of
@@ -34,7 +35,7 @@ class Group:
 
     index: np.ndarray  #: (designs) which designs of the chunk they are
     p: Parameters  #: each number an array (designs)
-    ends: str
+    line: Line  #: of one unknown, with what the fibres may do
     held: tuple[str, str]
     wanted: np.ndarray  #: (designs, n, 2) in SI units
     corners: np.ndarray  #: (designs, c, 3) length, force, pressure, for the placement of points
@@ -128,7 +129,7 @@ def _group(muscle: Muscle, test: Test, values: dict[str, np.ndarray], index: np.
     wanted = np.moveaxis(np.concatenate(rows), 1, 0)
     if held[0] == "length":
         valid = valid & (wanted[:, :, 0].max(axis=1) <= NEAR_EXTENSION * surely_reached(p, str(muscle.ends)))
-    made = Group(index, p, str(muscle.ends), (held[0], held[1]), wanted, np.concatenate(corners, axis=1))
+    made = Group(index, p, Line.of(muscle, 1), (held[0], held[1]), wanted, np.concatenate(corners, axis=1))
     return made.take(np.flatnonzero(valid)) if valid.any() else None
 
 
@@ -189,6 +190,8 @@ def _corners(step: Step, held: tuple[str, ...], knots: dict[str, np.ndarray], p:
 def surely_reached(p: Parameters, ends: str) -> np.ndarray:
     """A length [m] below full extension (theory page): that of a long muscle less what its two ends take."""
     fibre = p.H0 / np.sin(p.theta0)
+    if p.EA is not None:
+        return np.full_like(fibre, np.inf)
     if ends == Ends.FREE:
         return np.asarray(fibre)
     return np.maximum(fibre - 2.0 * p.R0 / np.cos(p.theta0) * (1.0 - np.sin(p.theta0)), p.H0)

@@ -1,0 +1,59 @@
+"""What the local variables of the spectral line mean, with and without the stretch and the roll of the fibres.
+
+theta is integrated from theta' = rate(psi), Eq. (12). Where fibres stretch, that rate gains a field, the excess, and
+the logarithm q of their stretch is integrated from q' = excess tan(theta). As EA grows the excess tends to zero, so
+that the shapes of stiff fibres lie in a plane of unknowns, not along a curved valley: searches stay quick.
+"""
+
+from functools import cache
+
+import jax.numpy as jnp
+
+from mckibben.discretise.fields import Form, Integral, Variables
+from mckibben.model.angle import cos, radians, sin, tan
+from mckibben.model.kinematics import angle_rate, stretch_rate
+from mckibben.model.parameters import Number, Parameters
+from mckibben.model.point import Point
+
+__all__ = ["line_form"]
+
+ORDERS = {"psi": 0, "kappa": 1, "excess": 1, "turn": 0, "roll": 0, "roll_rate": 1}
+"""How often each field is differentiated by v; the turn of theta at a fitting is the same all along the length."""
+ANGLES = {"theta", "psi", "turn", "roll"}
+"""What enters by its sine and cosine alone."""
+
+
+@cache
+def line_form(stretch: bool, roll: bool, free: bool) -> Form:
+    """The form of a line whose fibres stretch and roll or not, and whose end radius is free or held."""
+    integrated = ("theta", "log_stretch") if stretch else ("theta",)
+    fields = ("psi", "kappa", *(("excess", "turn") if stretch else ()), *(("roll", "roll_rate") if roll else ()))
+    names = (*integrated, *fields)
+
+    def point(x: Variables, p: Parameters) -> Point:
+        at = dict(zip(names, x, strict=True))
+        stretched = _stretch(at["log_stretch"], None if free else at["turn"], p) if stretch else None
+        excess, phi, phi_rate = (at.get(name) for name in ("excess", "roll", "roll_rate"))
+        return Point(at["theta"], at["psi"], at["kappa"], stretched, excess, phi, phi_rate)
+
+    def turning(x: Variables, p: Parameters) -> Number:
+        at = dict(zip(names, x, strict=True))
+        return angle_rate(Point(None, at["psi"], at["kappa"], excess=at.get("excess")), p)
+
+    def stretching(x: Variables, p: Parameters) -> Number:
+        at = dict(zip(names, x, strict=True))
+        return stretch_rate(Point(at["theta"], None, None, excess=at["excess"]), p)
+
+    by = [names.index(name) for name in ("psi", "excess") if name in names]
+    integrals = [Integral(lambda p: radians(p.theta0), turning, tuple(by))]
+    if stretch:
+        integrals.append(Integral(lambda p: 0.0 * p.R0, stretching, (0, names.index("excess"))))
+    orders, angles = tuple(ORDERS[name] for name in fields), tuple(name in ANGLES for name in names)
+    return Form(tuple(integrals), point, orders, angles)
+
+
+def _stretch(log: Number, turn: Number | None, p: Parameters) -> Number:
+    """lambda at a point. Where r = R0 is held at the fitting and theta turns there, lambda cos(theta) = cos(theta0)."""
+    if turn is None:
+        return jnp.exp(log)
+    return jnp.exp(log) / (cos(turn) - tan(p.theta0) * sin(turn))

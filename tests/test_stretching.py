@@ -1,0 +1,189 @@
+"""Fibres that stretch: against an independent code, the cylinder in closed form, and the paper's model in the limit."""
+
+from typing import Any
+
+import jax
+import numpy as np
+import pytest
+from numpy.testing import assert_allclose
+from scipy.optimize import brentq
+
+import mckibben as mk
+
+pytestmark = pytest.mark.measure
+
+PET = 147.26215563702155
+"""EA [N] of the paper's fibres as assumed: E pi d^2/4."""
+
+# Case, joint, length [mm], EA over the fibre's; force [N], mid radius [mm], mid tension [N] by an independent code
+# with psi and s as unknowns. Clamped, 1 bar.
+STORED = [
+    ("paper", "hinge", 55.0, 1.0, -47.65036898688873, 14.596184355873092, 1.0613913965716637),
+    ("paper", "hinge", 55.0, 100.0, -46.698989671561286, 14.47882074685256, 1.0535654042295504),
+    ("paper", "hinge", 115.0, 1.0, 92.23913206016495, 8.621525133703432, 2.4352592927435417),
+    ("paper", "hinge", 115.0, 100.0, 101.11697119243861, 7.824994294966173, 2.464192415713228),
+    ("bare", "pin", 115.0, 1.0, 89.96089188789398, 8.616599221958245, 2.4062042675556796),
+    ("bare", "pin", 115.0, 100.0, 97.8469781366339, 7.827010539732406, 2.414021631220503),
+]
+
+
+def stretching(factor: float | None = 1.0, **changes: Any) -> mk.Muscle:
+    """The paper's muscle with fibres of `factor` times the axial stiffness of PET ones."""
+    muscle = mk.presets.paper().replace("braid.fibre.stretch", True)
+    if factor is not None:
+        muscle = muscle.replace("braid.fibre.axial_stiffness", factor * PET)
+    for name, value in changes.items():
+        muscle = muscle.replace(name.replace("__", "."), value)
+    return muscle
+
+
+@pytest.mark.parametrize(("case", "joint", "length", "factor", "force", "radius", "tension"), STORED)
+def test_independent_values(
+    case: str, joint: str, length: float, factor: float, force: float, radius: float, tension: float
+) -> None:
+    muscle = stretching(factor, braid__joint=joint)
+    muscle = muscle.replace("chamber", None) if case == "bare" else muscle
+    state = mk.solve(muscle, length=1e-3 * length, pressure="1 bar")
+    middle = state.result.data.isel(step=0, v=64)
+    assert state.verdict == "stable"
+    assert_allclose(state.force, force, rtol=1e-10)
+    assert_allclose(1e3 * middle["r"], radius, rtol=1e-7)
+    assert_allclose(middle["fibre_tension"], tension, rtol=2e-5 if factor > 1.0 else 3e-6)
+    assert_allclose(middle["fibre_tension"], factor * PET * (middle["fibre_stretch"] - 1.0), rtol=1e-12)
+
+
+def test_stiff_fibres_tend_to_the_papers_model() -> None:
+    held = {"length": "115 mm", "pressure": "1 bar", "tolerance": 1e-9}
+    exact = mk.solve(mk.presets.paper(), **held)  # type: ignore[arg-type]
+    factors = 10.0 ** np.arange(1, 5)
+    states = [mk.solve(stretching(float(factor)), **held) for factor in factors]  # type: ignore[arg-type]
+    short = [exact.force - state.force for state in states]
+    slope = -np.polyfit(np.log(factors[1:]), np.log(short[1:]), 1)[0]
+    assert abs(slope - 1.0) < 1e-3
+    tension = [state.result.data["fibre_tension"].values[0, 64] for state in (exact, states[-1])]
+    assert abs(tension[1] / tension[0] - 1.0) < 1e-4
+
+
+def test_ea_follows_from_a_round_fibre() -> None:
+    fibre = stretching(None).braid.fibre
+    assert pytest.approx(PET, rel=1e-12, abs=0.0) == fibre.EA
+    assert mk.presets.paper().braid.fibre.EA is None
+
+
+def test_long_muscle_with_free_ends_is_the_cylinder() -> None:
+    muscle = stretching(ends="free")
+    braid, law = muscle.braid, muscle.chamber.law  # type: ignore[union-attr]
+    _, B2, B3 = (float(B) for B in braid.fibre.stiffnesses)
+    R0, t0, N, t = braid.radius, braid.angle, braid.fibres, muscle.chamber.thickness  # type: ignore[union-attr]
+    A0, pressure, length = np.pi * t * (t + 2.0 * R0), 1e5, 1.3 * braid.length
+
+    def energy(theta: float, s: float) -> float:
+        """Per unit v, less P pi r^2 s; s is the meridian stretch, so that lambda = s sin(theta0)/sin(theta)."""
+        stretch = s * np.sin(t0) / np.sin(theta)
+        r = R0 * stretch * np.cos(theta) / np.cos(t0)
+        u2 = -np.cos(t0) * np.cos(theta) / R0 + np.cos(t0) ** 2 / R0
+        u3 = np.cos(t0) * np.sin(theta) / R0 - np.cos(t0) * np.sin(t0) / R0
+        fibres = N / (2.0 * np.sin(t0)) * (B2 * u2**2 + B3 * u3**2 + PET * (stretch - 1.0) ** 2)
+        hoop = r / R0
+        chamber = A0 * float(law.c1) * (hoop**2 + s**2 + (hoop * s) ** -2 - 3.0)
+        return float(fibres + chamber - pressure * np.pi * r**2 * s)
+
+    def by(f: Any, x: float) -> float:
+        return float((f(x - 2e-4) - 8.0 * f(x - 1e-4) + 8.0 * f(x + 1e-4) - f(x + 2e-4)) / 1.2e-3)
+
+    state = mk.solve(muscle, length=length, pressure=pressure, tolerance=1e-9)
+    middle = state.result.data.isel(step=0, v=64)  # where the edge effect of bending has died away
+    s = float(middle["fibre_stretch"] * np.sin(middle["theta"]) / np.sin(t0))
+    theta = brentq(lambda theta: by(lambda x: energy(x, s), theta), 0.7, 1.3, xtol=1e-14)
+    assert_allclose(middle["theta"], theta, rtol=1e-8)
+    # EA N = 8,247 N times an error of 1e-9 in the stretch is 8e-6 N.
+    assert_allclose(state.force, by(lambda x: energy(theta, x), s), rtol=3e-7)
+
+
+def test_longer_than_straight_fibres() -> None:
+    """Full extension is no wall: 128.8 mm with the ends held, 141.2 mm along the fibres."""
+    longest = mk.limits(mk.presets.paper(), pressure="1 bar").longest
+    assert longest < 0.129
+    curve = mk.run(stretching(), mk.Isobaric(pressure="1 bar", length="120 mm to 150 mm", points=7))
+    assert curve.verdict == ("stable",) * 7
+    assert (np.diff(curve.force) > 0.0).all()
+    assert curve.data["error_estimate"].max() < 1e-6
+
+
+def test_work_is_stored() -> None:
+    """Change of the stored energy = integral of F dh + P dV."""
+    curve = mk.run(stretching(), mk.Isobaric(pressure="1 bar", length="100 mm to 115 mm", points=61))
+    stored = curve.data["energy"].values[-1] - curve.data["energy"].values[0]
+    assert_allclose(curve.data["work"].values[-1], stored, rtol=1e-6)
+    parts = sum(curve.data[f"energy_{name}"] for name in ("bending_1", "bending_2", "twist", "chamber", "stretch"))
+    assert_allclose(parts, curve.data["energy"], rtol=1e-12)
+
+
+def test_a_slack_fibre_carries_no_compression() -> None:
+    """Squeezed at no pressure the chamber presses on the fibres, which then shorten or go slack."""
+    test = {"length": "70 mm", "pressure": 0.0}
+    pressed = mk.solve(stretching(), **test).result.data["fibre_tension"]  # type: ignore[arg-type]
+    slack = mk.solve(stretching(braid__fibre__slack=True), **test).result.data["fibre_tension"]  # type: ignore[arg-type]
+    assert float(pressed.min()) < -1e-4
+    assert float(slack.min()) == 0.0
+
+
+def test_derivatives_by_the_axial_stiffness() -> None:
+    muscle, test = stretching(), mk.Isometric(length="115 mm", pressure="1 bar")
+    by = jax.grad(lambda m: mk.response(m, test, tolerance=1e-9)["force"][0])(muscle).braid.fibre.axial_stiffness
+
+    def force(factor: float) -> float:
+        return float(mk.response(stretching(factor), test, tolerance=1e-9)["force"][0])
+
+    difference = (force(1.0 + 1e-4) - force(1.0 - 1e-4)) / (2e-4 * PET)
+    assert float(by) == pytest.approx(difference, rel=1e-7, abs=0.0)
+
+
+def test_a_sweep_is_its_single_runs() -> None:
+    test = mk.Isobaric(length="125 mm to 132 mm", pressure="1 bar", points=3)
+    swept = mk.sweep(stretching(), test, {"braid.fibre.axial_stiffness": ["100 N", "147 N", "300 N"]}, workers=1)
+    assert (swept["status"] == 0).all()
+    assert (swept["method"] == 0).all()
+    single = mk.run(stretching(300.0 / PET), test)
+    assert_allclose(swept["force"].values[2], single.force, rtol=1e-9)
+
+
+def test_antisymmetric_stability_is_that_of_the_papers_model() -> None:
+    """The shortest stable length, where one end bulges, tends to that of fibres that do not stretch."""
+    found = [mk.limits(muscle, pressure="1 bar").shortest for muscle in (mk.presets.paper(), stretching(1e4))]
+    assert_allclose(found[1], found[0], rtol=1e-4)
+
+
+WRONG: list[tuple[dict[str, Any], str]] = [
+    ({"axial_stiffness": "147 N"}, "only for fibres that stretch"),
+    ({"slack": True}, "only for fibres that stretch"),
+    ({"stretch": "yes"}, "must be true or false"),
+    ({"stretch": True, "axial_stiffness": "-1 N"}, "above 0"),
+]
+
+
+@pytest.mark.parametrize(("given", "said"), WRONG)
+def test_wrong_input(given: dict[str, Any], said: str) -> None:
+    with pytest.raises(mk.SpecError, match=said):
+        mk.Fibre(diameter="0.25 mm", E="3 GPa", nu=0.4, **given)
+
+
+def test_stiffnesses_alone_tell_no_axial_one() -> None:
+    with pytest.raises(mk.SpecError, match="give EA"):
+        mk.Fibre(B1="0.5 N mm^2", B2="0.5 N mm^2", B3="0.4 N mm^2", stretch=True)
+
+
+def test_the_papers_mesh_refuses() -> None:
+    with pytest.raises(mk.SpecError, match="neither stretch nor roll"):
+        mk.run(stretching(), mk.Isometric(length="115 mm", pressure="1 bar"), discretisation="paper")
+
+
+def test_files(tmp_path: Any) -> None:
+    curve = mk.run(stretching(braid__joint="pin"), mk.Isometric(length="115 mm", pressure="1 bar"))
+    mk.save(curve, tmp_path / "curve.nc")
+    assert mk.load(tmp_path / "curve.nc") == curve
+    plain = mk.run(mk.presets.paper(), mk.Isometric(length="115 mm", pressure="1 bar"))
+    assert not {"fibre_stretch", "energy_stretch", "roll"} & set(plain.data)
+    assert "stretch" not in plain.attributes["muscle"]
+    mk.save(curve, tmp_path / "curve.csv")
+    assert "energy_stretch [J]" in (tmp_path / "curve.csv").read_text().splitlines()[0]
