@@ -10,6 +10,7 @@ import jax.numpy as jnp
 import numpy as np
 
 from mckibben.model import pytrees
+from mckibben.spec.laws import NeoHookean, Rubber
 from mckibben.spec.muscle import Muscle
 from mckibben.units import is_traced
 
@@ -63,10 +64,15 @@ def numbers(muscle: Muscle) -> Parameters:
         braid.radius, braid.length, braid.angle, braid.fibres, B1, B2, B3,
         1.0 if fibre.natural == "helical" else 0.0,
         np.pi * thickness * (thickness + 2.0 * braid.radius),
-        None if chamber is None else chamber.law,
+        None if chamber is None else _law(chamber.law),
         fibre.EA,
         (1.0 if fibre.slack else 0.0) if fibre.stretch else None,
     )  # fmt: skip
+
+
+def _law(law: Any) -> Any:
+    """The law as the energy knows it: rubber is neo-Hookean, wherever its one constant comes from."""
+    return pytrees.made(NeoHookean, {"c1": law.c1}) if isinstance(law, Rubber) else law
 
 
 def static_braid(p: Parameters) -> Number:

@@ -3,7 +3,7 @@
 from mckibben.spec.declared import describe, numbers, walk
 from mckibben.spec.errors import SpecError
 from mckibben.spec.fields import spec_classes
-from mckibben.spec.laws import LAWS, CustomLaw, Gent, Law, MooneyRivlin, NeoHookean, Ogden, Yeoh
+from mckibben.spec.laws import LAWS, ArrudaBoyce, CustomLaw, Gent, Law, MooneyRivlin, NeoHookean, Ogden, Rubber, Yeoh
 from mckibben.spec.loading import (
     TESTS,
     Along,
@@ -25,6 +25,7 @@ __all__ = [
     "LAWS",
     "TESTS",
     "Along",
+    "ArrudaBoyce",
     "BlockedForce",
     "Braid",
     "Chamber",
@@ -46,6 +47,7 @@ __all__ = [
     "Path",
     "PathMode",
     "Protocol",
+    "Rubber",
     "SpecError",
     "Step",
     "Test",

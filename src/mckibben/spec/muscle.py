@@ -295,7 +295,8 @@ class Chamber:
 
     Args:
         thickness: wall thickness t0 as made [m], above 0.
-        law: hyperelastic law of the elastomer: `MooneyRivlin`, `NeoHookean`, `Yeoh`, `Ogden`, `Gent` or `CustomLaw`.
+        law: hyperelastic law of the elastomer: `MooneyRivlin`, `NeoHookean`, `Yeoh`, `Ogden`, `Gent`, `ArrudaBoyce`,
+            `CustomLaw`, or `Rubber` where nothing was tested.
 
     Raises:
         SpecError: for a thickness out of range, or a law that is none of these.
@@ -331,7 +332,7 @@ class Muscle:
         ends: what the fittings hold, one of `Ends`: "clamped" (default), "pinned" or "free".
         name: a name for people, shown in tables and files.
         assumed: names of the fields ("braid.fibres") whose values are assumptions; tables, pictures and files mark
-            them.
+            them. A hardness (`Rubber`) always is among them: the stiffness is estimated from it.
 
     Raises:
         SpecError: for a part of the wrong kind, or a name in `assumed` that is no field of this muscle.
@@ -351,6 +352,10 @@ class Muscle:
     assumed: tuple[str, ...] = words(meaning="names of fields whose values are assumptions", many=True, default=())
 
     def __attrs_post_init__(self) -> None:
+        law = None if self.chamber is None else self.chamber.law
+        estimated = [f"chamber.law.{name}" for name in getattr(law, "estimated", ())]
+        missing = tuple(field for field in estimated if field not in self.assumed)
+        object.__setattr__(self, "assumed", (*self.assumed, *missing))
         known = [field for field, _, _ in walk(self) if field not in ("name", "assumed")]
         for field in self.assumed:
             if field not in known:
