@@ -14,6 +14,7 @@ from jaxtyping import Bool, Float, Int
 
 from mckibben.compiled.arrays import Array
 from mckibben.compiled.kernel import kernel
+from mckibben.compiled.rows import filled
 from mckibben.discretise.fields import Placed, place, points_at, variables
 from mckibben.discretise.fields import known as with_sines
 from mckibben.measure.peak import peak
@@ -69,16 +70,19 @@ def read(basis: Basis, on: Placed, state: Unknowns) -> Reading:
     weights = jnp.asarray(operators.weights) * on.jacobian
     parts = [jnp.sum(weights * density) for density in densities]
     length, volume = jnp.sum(weights * rate), jnp.sum(weights * swept)
-    inner_costates, costates = _costates(basis, on, inner, (F, P, M), sampling)
-    found = jax.vmap(lambda at, c: _fields(at, c, F, P, p))(outer, costates)
+    inner_costates, outer_costates = _costates(basis, on, inner, (F, P, M), sampling)
+    q = len(weights)
+    points, costates = jax.tree.map(
+        lambda *both: jnp.concatenate(both), (inner, inner_costates), (outer, outer_costates)
+    )  # fmt: skip
+    everywhere = jax.vmap(lambda at, c: _fields(at, c, F, P, p))(points, costates)
+    found = {name: values[q:] for name, values in everywhere.items()}
     found["z"] = sampling.integral @ (on.jacobian * rate)
-    ends = np.array([0] if basis.half else [0, -1])
-    checked = jax.tree.map(lambda one, other: jnp.concatenate([one, other[ends]]), inner, outer)
-    along = jax.tree.map(lambda one, other: jnp.concatenate([one, other[ends]]), inner_costates, costates)
-    variation = _variation(on, checked, along, F, P, weights)
-    inner_tension = jax.vmap(lambda at, c: tension(at, c, F, P, p))(inner, inner_costates)
-    inner_radius = jax.vmap(lambda at: radius(at, p))(inner)
-    tallest = jax.vmap(lambda field: peak(field, basis.harmonics()))(jnp.stack([inner_tension, inner_radius]))
+    checked = np.append(np.arange(q), q if basis.half else [q, -1])  # the mesh and the fittings
+    at, along = jax.tree.map(lambda rows: rows[checked], (points, costates))
+    variation = _variation(on, at, along, F, P, weights)
+    extremes = jnp.stack([everywhere[name][:q] for name in ("fibre_tension", "r")])
+    tallest = jax.vmap(lambda field: peak(field, basis.harmonics()))(extremes)
     numbers = {
         "length": length, "contraction": 1.0 - length / p.H0, "force": F, "pressure": P, "volume": volume,
         **{f"energy_{name}": part for name, part in zip(names, parts, strict=True)}, "energy": sum(parts),
@@ -213,15 +217,8 @@ def read_many(
         s = assemble(basis, on, local, len(state.loads))
         return read(basis, on, state), stable(basis, on, local, s, volume), residual(s, state.loads)
 
-    def some(k: Any) -> Any:
+    def some(k: Array) -> Any:
         return jax.vmap(one)(jax.tree.map(lambda rows: jax.lax.dynamic_slice_in_dim(rows, k * size, size), states))
 
-    blank = jax.tree.map(lambda s: jnp.zeros((n, *s.shape[1:]), s.dtype), jax.eval_shape(some, 0))
-
-    def put(k: Any, rows: Any) -> Any:
-        return jax.tree.map(
-            lambda row, new: jax.lax.dynamic_update_slice_in_dim(row, new, k * size, 0), rows, some(k)
-        )  # fmt: skip
-
-    found: tuple[Reading, Stable, Array] = jax.lax.fori_loop(0, (count + size - 1) // size, put, blank)
+    found: tuple[Reading, Stable, Array] = filled(some, (count + size - 1) // size, n)
     return found
