@@ -28,8 +28,8 @@ class Line:
     """A space of slopes psi: `size` modes, their symmetry about mid-length, and the ends they satisfy.
 
     The unknowns u are the coefficients of the modes: of psi, of the excess where the fibres stretch, and of their roll;
-    then what changes at the first end: the braid angle where the radius is free or the fibres stretch, and the
-    logarithm of their stretch where both is so.
+    then what changes at the ends: the braid angle where the radius is free or the fibres stretch, the logarithm of
+    their stretch where both is so, and the give of the fittings, which antisymmetric disturbances do not touch.
     """
 
     size: int
@@ -37,16 +37,18 @@ class Line:
     modes: Modes = "odd"
     stretch: bool = False  #: whether the fibres stretch
     roll: bool = False  #: whether they roll
+    give: bool = False  #: whether the fittings give way
 
     @classmethod
     def of(cls, muscle: Muscle, size: int) -> "Line":
         """The space of symmetric shapes of a muscle: what its ends hold, and what its fibres may do."""
-        return cls(size, str(muscle.ends), stretch=muscle.braid.fibre.stretch, roll=muscle.braid.joint == Joint.PIN)
+        roll, give = muscle.braid.joint == Joint.PIN, muscle.fittings is not None
+        return cls(size, str(muscle.ends), stretch=muscle.braid.fibre.stretch, roll=roll, give=give)
 
     @property
     def form(self) -> Form:
         """What the local variables mean."""
-        return line_form(self.stretch, self.roll, self.ends == "free")
+        return line_form(self.stretch, self.roll, self.give, self.ends == "free")
 
     @property
     def points(self) -> int:
@@ -65,8 +67,13 @@ class Line:
 
     @property
     def turns(self) -> int:
-        """Unknowns of the first end, after the series: theta, and the stretch."""
-        return (self.ends == "free") + self.stretch
+        """Unknowns of the ends, after the series: theta, the stretch, and the give of the fittings."""
+        return (self.ends == "free") + self.stretch + self.gives
+
+    @property
+    def gives(self) -> bool:
+        """Whether the give of the fittings is among the unknowns."""
+        return self.give and self.modes != "even"
 
     @property
     def unknowns(self) -> int:
@@ -178,7 +185,10 @@ def _at(line: Line, x: Floats) -> tuple[tuple[Floats, ...], tuple[Floats, ...]]:
         series = _modes(line.modes, line.size, clamped=line.ends == "clamped" and name != "excess")
         value, slope = (wide(legendre.legval(x, part).T, k * line.size) for part in (series, legendre.legder(series)))
         tables += [value, ends[0]] if name == "excess" else [value, slope]
-    lifts = (*ends, *[wide(np.zeros((len(x), 0)), 0)] * 2)
+    nothing = wide(np.zeros((len(x), 0)), 0)
+    if line.give:
+        tables.append(ends.pop() if line.gives else nothing)
+    lifts = (*ends, nothing, nothing)
     return tuple(tables), lifts[: len(line.form.integrals)]
 
 

@@ -20,7 +20,7 @@ from mckibben.discretise.fields import known as with_sines
 from mckibben.measure.peak import peak
 from mckibben.model.angle import cos, radians, slope
 from mckibben.model.chamber import chamber_density, chamber_pull
-from mckibben.model.energy import lagrangian
+from mckibben.model.energy import fittings_density, lagrangian
 from mckibben.model.fibres import axial_density, fibre_densities
 from mckibben.model.kinematics import fibre_strains, height_rate, radius, stretches, volume_rate
 from mckibben.model.parameters import Number, Parameters
@@ -66,10 +66,11 @@ def read(basis: Basis, on: Placed, state: Unknowns) -> Reading:
         return tuple(_densities(at, p).values()), height_rate(at, p), volume_rate(at, p)
 
     densities, rate, swept = jax.vmap(local)(inner)
-    names = ENERGIES if inner.stretch is None else (*ENERGIES, "stretch")
+    names = tuple(_densities(jax.tree.map(lambda rows: rows[0], inner), p))
     weights = jnp.asarray(operators.weights) * on.jacobian
     parts = [jnp.sum(weights * density) for density in densities]
     length, volume = jnp.sum(weights * rate), jnp.sum(weights * swept)
+    length = length if inner.give is None else length + jnp.sum(weights * inner.give)
     inner_costates, outer_costates = _costates(basis, on, inner, (F, P, M), sampling)
     q = len(weights)
     points, costates = jax.tree.map(
@@ -99,7 +100,8 @@ def _points(basis: Basis, on: Placed, u: Array) -> Point:
 def _densities(at: Point, p: Parameters) -> dict[str, Number]:
     """The parts of the stored energy per unit v [J/m], by name."""
     parts = dict(zip(ENERGIES, (*fibre_densities(at, p), chamber_density(at, p)), strict=True))
-    return parts if at.stretch is None else parts | {"stretch": axial_density(at, p)}
+    parts = parts if at.stretch is None else parts | {"stretch": axial_density(at, p)}
+    return parts if at.give is None else parts | {"fittings": fittings_density(at, p)}
 
 
 Costates = tuple[Array, ...]

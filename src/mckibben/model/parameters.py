@@ -43,6 +43,7 @@ class Parameters(NamedTuple):
     law: Any  #: law of the chamber: its kind is static, its constants are leaves; None for the bare braid
     EA: Any = None  #: axial stiffness of a fibre [N]; None where the fibres do not stretch
     slack: Any = None  #: 1 if a fibre carries no compression, 0 if it does
+    compliance: Any = None  #: of both fittings together [m/N]; None where they are rigid
 
 
 def parameters(muscle: Muscle) -> Parameters:
@@ -67,6 +68,7 @@ def numbers(muscle: Muscle) -> Parameters:
         None if chamber is None else _law(chamber.law),
         fibre.EA,
         (1.0 if fibre.slack else 0.0) if fibre.stretch else None,
+        None if muscle.fittings is None else muscle.fittings.compliance,
     )  # fmt: skip
 
 

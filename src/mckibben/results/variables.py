@@ -15,6 +15,7 @@ STEP: dict[str, tuple[str, str]] = {
     "energy_twist": ("J", "fibre energy, twist"),
     "energy_chamber": ("J", "energy of the chamber"),
     "energy_stretch": ("J", "fibre energy, stretch"),
+    "energy_fittings": ("J", "energy of the fittings, which give way"),
     "energy": ("J", "stored energy"),
     "work": ("J", "work done on the muscle since the first state"),
     "verdict": ("", "verdict"),
@@ -81,6 +82,7 @@ OPTIONAL: dict[str, Callable[[Muscle], bool]] = {
     "energy_stretch": lambda muscle: muscle.braid.fibre.stretch,
     "fibre_stretch": lambda muscle: muscle.braid.fibre.stretch,
     "density_stretch": lambda muscle: muscle.braid.fibre.stretch,
+    "energy_fittings": lambda muscle: muscle.fittings is not None,
     "roll": lambda muscle: muscle.braid.joint == Joint.PIN,
 }
 """Variables that only some muscles have."""

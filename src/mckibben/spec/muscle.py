@@ -13,6 +13,7 @@ from mckibben.spec.change import changed_muscle
 from mckibben.spec.declared import Reads, walk
 from mckibben.spec.errors import SpecError, nearest
 from mckibben.spec.fields import choice, count, part, quantity, spec, switch, words
+from mckibben.spec.fittings import Fittings
 from mckibben.spec.laws import LAWS, Law
 from mckibben.spec.limits import BENDING, check_angle, check_muscle
 from mckibben.units import Number, is_traced, show
@@ -330,6 +331,7 @@ class Muscle:
         braid: the tube of fibres, a `Braid`.
         chamber: the elastomer tube, a `Chamber`, or None for a bare braid.
         ends: what the fittings hold, one of `Ends`: "clamped" (default), "pinned" or "free".
+        fittings: `Fittings` that give way, or None for rigid ones.
         name: a name for people, shown in tables and files.
         assumed: names of the fields ("braid.fibres") whose values are assumptions; tables, pictures and files mark
             them. A hardness (`Rubber`) always is among them: the stiffness is estimated from it.
@@ -348,6 +350,9 @@ class Muscle:
     braid: Braid = part(Braid, meaning="the tube of fibres")
     chamber: Chamber | None = part(Chamber, meaning="the elastomer tube, none for a bare braid", default=None)
     ends: Reads[Ends] = choice(Ends, meaning="what the fittings hold", default=Ends.CLAMPED)
+    fittings: Fittings | None = part(
+        Fittings, meaning="fittings that give way, none for rigid ones", default=None, quiet=True
+    )
     name: str | None = words(meaning="a name for people", default=None)
     assumed: tuple[str, ...] = words(meaning="names of fields whose values are assumptions", many=True, default=())
 
