@@ -124,11 +124,20 @@ class Line:
         return 1.0
 
     def tail(self, u: Array) -> Any:
-        """Largest of the last two coefficients over the largest (..., m): how well the series has converged."""
-        size = abs(u[..., : self.size * len(self.series)])
-        last = [size[..., k * self.size - 2 : k * self.size].max(-1) for k in range(1, len(self.series) + 1)]
-        f = functions(u)
-        return reduce(f.maximum, last) / f.maximum(size.max(-1), 1e-12)
+        """Largest of the last coefficients of a series over the largest of all (..., m): how well it has converged.
+
+        Waves of the wall make a series that falls slowly and unevenly, whose last two may be small by chance: the error
+        was then three squares of its last eighth x, which counts as the tail whose power 1.5 that is.
+        """
+        f, series = functions(u), len(self.series)
+        size = abs(u[..., : self.size * series])
+        top = f.maximum(size.max(-1), 1e-12)
+        blocks = [size[..., k * self.size : (k + 1) * self.size] for k in range(series)]
+        two, eighth = (
+            reduce(f.maximum, [block[..., -count:].max(-1) for block in blocks]) / top
+            for count in (2, max(2, self.size // 8))
+        )
+        return f.maximum(two, (3.0 * eighth**2) ** (2.0 / 3.0))
 
     def embedded(self, other: Any, u: Floats) -> Floats:
         """Unknowns u (m) of another line, larger or smaller or half of it, as unknowns of this one."""
