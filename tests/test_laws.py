@@ -9,9 +9,10 @@ import numpy as np
 import pytest
 
 from mckibben import spec
-from mckibben.model.chamber import LAWS, chamber_density, energy_density
+from mckibben.model.chamber import LAWS, energy_density
 from mckibben.model.parameters import parameters
 from mckibben.model.point import Point
+from mckibben.model.wall import chamber_density
 
 pytestmark = pytest.mark.model
 

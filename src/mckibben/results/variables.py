@@ -6,6 +6,7 @@ STEP: dict[str, tuple[str, str]] = {
     "force": ("N", "axial force, positive in tension"),
     "pressure": ("Pa", "gauge pressure"),
     "volume": ("m^3", "volume inside the braid"),
+    "air_volume": ("m^3", "volume inside the braid without the rubber that lies inside"),
     "energy_bending_1": ("J", "fibre energy, bending in the tangent plane"),
     "energy_bending_2": ("J", "fibre energy, bending normal to the surface"),
     "energy_twist": ("J", "fibre energy, twist"),
@@ -47,6 +48,7 @@ FIELDS: dict[str, tuple[str, str]] = {
     "fibre_tension": ("N", "tension of one fibre"),
     "share_mesh": ("1", "share of the axial load F + pi r^2 P carried by the mesh"),
     "share_chamber": ("1", "share of the axial load F + pi r^2 P carried by the chamber"),
+    "contact_pressure": ("Pa", "pressure of the chamber on the mesh, below 0 where it would not touch"),
 }
 """Variables along the material coordinate v: unit and meaning."""
 
@@ -54,7 +56,7 @@ OBSERVED: dict[str, tuple[str, str]] = {
     name: STEP[name]
     for name in (
         "length", "contraction", "force", "pressure", "volume", "energy_bending_1", "energy_bending_2", "energy_twist",
-        "energy_chamber", "energy",
+        "energy_chamber", "energy", "air_volume",
     )
 } | {
     "peak_fibre_tension": ("N", "largest tension of a fibre along its length"),
@@ -70,6 +72,8 @@ EXTREMES: dict[str, tuple[str, str]] = {
 """What tables show of a state's fields: unit and meaning. A muscle without a breaking force has no safety factor."""
 
 VARIABLES = STEP | FIELDS
+LATER = ("air_volume", "contact_pressure")
+"""Variables that files of earlier versions do not hold; NaN there."""
 COORDINATES = {"step": ("", "state"), "v": ("m", "axial material coordinate")}
 
 

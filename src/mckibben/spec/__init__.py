@@ -1,6 +1,8 @@
 """The specification: the muscle and the test that a user describes, immutable and checked, in SI numbers."""
 
+from mckibben.spec.chamber import Chamber, Side, Wall
 from mckibben.spec.declared import describe, numbers, walk
+from mckibben.spec.ends import Ends
 from mckibben.spec.errors import SpecError
 from mckibben.spec.fields import spec_classes
 from mckibben.spec.laws import LAWS, CustomLaw, Gent, Law, MooneyRivlin, NeoHookean, Ogden, Yeoh
@@ -17,7 +19,7 @@ from mckibben.spec.loading import (
     Step,
     Test,
 )
-from mckibben.spec.muscle import Braid, Chamber, Ends, Fibre, Muscle
+from mckibben.spec.muscle import Braid, Fibre, Muscle
 from mckibben.spec.path import Path, PathMode
 from mckibben.spec.reference import reference_markdown
 
@@ -45,9 +47,11 @@ __all__ = [
     "Path",
     "PathMode",
     "Protocol",
+    "Side",
     "SpecError",
     "Step",
     "Test",
+    "Wall",
     "Yeoh",
     "describe",
     "numbers",

@@ -179,9 +179,9 @@ def _read_part(value: Any, field: str, declared: Declared) -> Any:
     raise SpecError(field, value, f"must be a {names}", advice)
 
 
-def part(*kinds: type, meaning: str, default: Any = attrs.NOTHING) -> Any:
-    """A field that holds another spec object, of one of `kinds`."""
-    return declare(Declared(kind="part", read=_read_part, meaning=meaning, parts=kinds, default=default))
+def part(*kinds: type, meaning: str, default: Any = attrs.NOTHING, kw_only: bool = False) -> Any:
+    """A field that holds another spec object, of one of `kinds`; `kw_only` where fields before it may be left out."""
+    return declare(Declared(kind="part", read=_read_part, meaning=meaning, parts=kinds, default=default), kw_only)
 
 
 @dataclass_transform(frozen_default=True, field_specifiers=(quantity, quantities, count, choice, words, part, declare))

@@ -1,4 +1,4 @@
-"""The muscle as its maker describes it: `Fibre`, `Braid`, `Chamber`, `Ends`, `Muscle`. Immutable, compared by value."""
+"""The muscle as its maker describes it: `Fibre`, `Braid`, `Muscle`. Immutable, compared by value."""
 
 from __future__ import annotations
 
@@ -9,36 +9,16 @@ from typing import Any
 import attrs
 
 from mckibben.spec.angle import AngleFrom, both_ways, from_parallels, tendency
+from mckibben.spec.chamber import Chamber
 from mckibben.spec.change import changed_muscle
 from mckibben.spec.declared import Reads, walk
+from mckibben.spec.ends import Ends
 from mckibben.spec.errors import SpecError, nearest
 from mckibben.spec.fields import choice, count, part, quantity, spec, words
-from mckibben.spec.laws import LAWS, Law
 from mckibben.spec.limits import BENDING, check_angle, check_muscle
 from mckibben.units import Number, is_traced, show
 
-__all__ = ["Braid", "Chamber", "Ends", "Fibre", "Muscle", "Natural"]
-
-
-class Ends(StrEnum):
-    """What the fittings hold: radius and slope (clamped), the radius only (pinned), nothing (free).
-
-    With the braid angle theta and the slope angle psi of the wall, at both ends:
-
-    CLAMPED: theta = theta0 and psi = 0; the fibres are built into the fitting. The default.
-    PINNED: theta = theta0; the radius is held, the fibres swing freely.
-    FREE: the radius is free. Away from the ends the muscle is the uniform cylinder of the textbooks.
-
-    The words do as well: `ends="pinned"` is read as Ends.PINNED and compares equal to it. Another word is a SpecError.
-
-    >>> muscle = mk.presets.paper().replace("ends", "pinned")
-    >>> muscle.ends == mk.Ends.PINNED == "pinned"
-    True
-    """
-
-    CLAMPED = "clamped"
-    PINNED = "pinned"
-    FREE = "free"
+__all__ = ["Braid", "Fibre", "Muscle", "Natural"]
 
 
 class Natural(StrEnum):
@@ -228,37 +208,6 @@ def _rounded_down(value: float) -> float:
     """`value` to six digits, rounded down, so that advice of "at most" this value can be followed."""
     step = 10.0 ** (math.floor(math.log10(value)) - 5)
     return math.floor(value / step * (1.0 - 1e-12)) * step
-
-
-@spec("chamber")
-class Chamber:
-    """The incompressible elastomer tube inside the braid.
-
-    A thin wall that touches the braid everywhere and deforms with it. Its cross-section as made is
-    A0 = pi t0 (t0 + 2 R0), where R0 is the radius of the braid (Eq. 26).
-
-    Args:
-        thickness: wall thickness t0 as made [m], above 0.
-        law: hyperelastic law of the elastomer: `MooneyRivlin`, `NeoHookean`, `Yeoh`, `Ogden`, `Gent` or `CustomLaw`.
-
-    Raises:
-        SpecError: for a thickness out of range, or a law that is none of these.
-
-    >>> chamber = mk.Chamber(thickness="1 mm", law=mk.MooneyRivlin(c1="8.5 kPa"))
-    >>> chamber.thickness  # m
-    0.001
-    """
-
-    thickness: Reads[float] = quantity(
-        "m",
-        meaning="wall thickness t0 as made",
-        low=0.0,
-        low_open=True,
-        size=(1e-8, 10.0),
-        source="Eq. (26)",
-        doubt=(0.1, 100.0),
-    )
-    law: Law = part(*LAWS.values(), meaning="hyperelastic law of the elastomer")
 
 
 @spec("muscle")
