@@ -23,8 +23,9 @@ __all__ = [
     "touching_pressure",
 ]
 
-GAUSS = 8
-"""Points through a thick wall: an error of 1e-7 of the energy where the outer radius is twice the inner, less below."""
+GAUSS = 6
+"""Points through a thick wall: errors below 1e-11 of the energy for a bore of half the outer diameter, 1e-7 for a
+quarter."""
 
 
 def mean_density(hoop: Number, axial: Number, p: Parameters) -> Number:
@@ -32,16 +33,17 @@ def mean_density(hoop: Number, axial: Number, p: Parameters) -> Number:
     hoop, axial = _mounted(hoop, axial, p)
     if p.tube is None or p.tube.across is None:
         return energy_density(hoop, axial, 1.0 / (hoop * axial), p.law)
-    across = p.tube.across
+    width = jnp.log1p(p.tube.across - 1.0)
     points, weights = np.polynomial.legendre.leggauss(GAUSS)
 
-    def at(point: Number) -> Number:  # in the square of the radius as made, in which rubber is spread evenly
-        square = 1.0 + 0.5 * (across - 1.0) * (1.0 + point)
+    def at(point: Number) -> Number:  # in the logarithm of the radius as made, in which no pole is near
+        square = jnp.exp(0.5 * width * (1.0 + point))
         around = jnp.sqrt((hoop**2 + (square - 1.0) / axial) / square)
-        return energy_density(around, axial, 1.0 / (around * axial), p.law)
+        return square * energy_density(around, axial, 1.0 / (around * axial), p.law)
 
-    bore = hoop**2 + (across - 1.0) / axial  # square of the other face's radius; without one there is no such tube
-    return jnp.where(bore > 0.0, 1.0, jnp.nan) * (jax.vmap(at)(points) @ (0.5 * weights))
+    mean = width / (p.tube.across - 1.0) * (jax.vmap(at)(points) @ (0.5 * weights))
+    bore = hoop**2 + (p.tube.across - 1.0) / axial  # the other face's radius squared: none, no tube
+    return jnp.where(bore > 0.0, 1.0, jnp.nan) * mean
 
 
 def _mounted(hoop: Number, axial: Number, p: Parameters) -> tuple[Number, Number]:
