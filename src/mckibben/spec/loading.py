@@ -192,7 +192,10 @@ class Step:
 
 
 def _in_lengths(step: Step, muscle: Muscle) -> Step:
-    """A step with lengths in place of contractions, as they are for a muscle."""
+    """A step with lengths in place of contractions, as they are for a muscle. SpecError for gas beside rubber."""
+    if step.gas is not None and muscle.chamber is not None and muscle.chamber.inside:
+        said = "would take all of the volume inside the braid for gas, and here the rubber lies inside too"
+        raise SpecError("step.gas", str(step.gas), said, 'hold pressure or volume, or let the wall lie "outside"')
     if step.length is None or step.length.unit == "m":
         return step
     return evolved(step, length=lengths(step.length, muscle.braid.length))
