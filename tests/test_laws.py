@@ -10,9 +10,10 @@ import pytest
 from scipy.optimize import brentq
 
 from mckibben import spec
-from mckibben.model.chamber import EIGHT_CHAINS, LAWS, chamber_density, energy_density
+from mckibben.model.chamber import EIGHT_CHAINS, LAWS, energy_density
 from mckibben.model.parameters import parameters
 from mckibben.model.point import Point
+from mckibben.model.wall import chamber_density
 
 pytestmark = pytest.mark.model
 

@@ -10,6 +10,7 @@ _PUBLIC = {
         "Muscle", "NeoHookean", "Ogden", "Rubber", "Yeoh", "BlockedForce", "FreeContraction", "Isobaric", "Isometric",
         "Isotonic", "Protocol", "Step", "SpecError",
     ),
+    "mckibben.spec.sleeve": ("centre_radius",),
     "mckibben.experiments.run": ("run",),
     "mckibben.experiments.solve": ("solve",),
     "mckibben.experiments.limits": ("Limits", "least_pressure", "limits", "working_range"),

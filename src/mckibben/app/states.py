@@ -14,6 +14,7 @@ from mckibben.files.table import rows
 from mckibben.results.result import Result
 from mckibben.results.variables import EXTREMES
 from mckibben.results.verdict import Verdict
+from mckibben.spec import Muscle
 from mckibben.units import from_si
 
 __all__ = ["as_json", "exit_code", "show"]
@@ -30,6 +31,8 @@ COLUMNS = (
 """Columns of the table: variable, its short name and the unit it is shown in."""
 SAFETY = ("safety_factor", "safety", "")
 """The column of a muscle whose fibres have a breaking force."""
+AIR = ("air_volume", "air", "mL")
+"""The column of a muscle whose chamber lies inside the braid, after that of the volume."""
 MOST_ROWS = 40
 """Rows of the table; of more states the ones in the middle are left out."""
 GOOD = (Verdict.STABLE, Verdict.UNSTABLE)
@@ -47,7 +50,7 @@ def show(result: Result, tolerance: float) -> None:
     """Print the table of states, then the notes on them."""
     states = list(rows(result))
     several = states[-1]["protocol_step"] > 0
-    columns = COLUMNS if result.muscle.braid.fibre.breaking_force is None else (*COLUMNS, SAFETY)
+    columns = _columns(result.muscle)
     heads = (f"{name}\n[{unit}]" if unit else name for _, name, unit in columns)
     names = ["state", *(["step"] if several else []), *heads, "verdict"]
     cells = [
@@ -70,6 +73,13 @@ def show(result: Result, tolerance: float) -> None:
     say("contr.: contraction; diam.: largest diameter of the braid; tension: the largest of a fibre")
     for note in _notes(result, states, tolerance):
         say(note)
+
+
+def _columns(muscle: Muscle) -> tuple[tuple[str, str, str], ...]:
+    """The columns that say something of this muscle."""
+    inside = muscle.chamber is not None and muscle.chamber.inside
+    shown = (column for one in COLUMNS for column in ((one, AIR) if inside and one[0] == "volume" else (one,)))
+    return (*shown, *(() if muscle.braid.fibre.breaking_force is None else (SAFETY,)))
 
 
 def _numbers(row: dict[str, Any], columns: tuple[tuple[str, str, str], ...]) -> Iterator[str]:

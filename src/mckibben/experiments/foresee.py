@@ -6,6 +6,8 @@ import math
 from collections.abc import Iterator
 
 from mckibben.model.extension import longest
+from mckibben.model.parameters import parameters
+from mckibben.model.wall import touching_pressure
 from mckibben.spec import Muscle, Test
 from mckibben.spec.angle import MAGIC, both_ways, tendency
 from mckibben.units import show
@@ -28,10 +30,25 @@ def derived(muscle: Muscle) -> Iterator[tuple[str, str, str]]:
         yield "fibre stiffness EA", show(fibre.EA, "N"), "tension over strain of one fibre"
     if muscle.chamber is not None and hasattr(muscle.chamber.law, "shear_modulus"):
         yield "shear modulus", show(muscle.chamber.law.shear_modulus, "kPa"), "of the chamber, at small strain"
+    yield from _chamber(muscle)
     if fibre.diameter is not None:
         room = 2.0 * math.pi * braid.radius * math.sin(braid.angle) / (braid.fibres // 2)
         said = f"between neighbouring fibres as made: {room / fibre.diameter:.3g} diameters; the braid jams at 1"
         yield "jamming room", show(room, "m"), said
+
+
+def _chamber(muscle: Muscle) -> Iterator[tuple[str, str, str]]:
+    """What follows from a chamber that is not the paper's."""
+    p = parameters(muscle)
+    if muscle.chamber is None or p.tube is None:
+        return
+    hoop, axial = (float(x) for x in p.tube[:2])
+    face = "outer" if muscle.chamber.inside else "inner"
+    yield "chamber as mounted", f"{hoop:.4g} x {axial:.4g}", f"hoop and axial stretch of its {face} face"
+    if muscle.chamber.inside:
+        yield "rubber inside", show(float(p.tube.rubber), "m^3"), "volume inside the braid that is not air"
+        touching = max(0.0, float(touching_pressure(p)))
+        yield "dead zone", show(touching, "Pa", 4), "pressure that blows the tube alone up to the braid as made"
 
 
 def turns(muscle: Muscle) -> str:

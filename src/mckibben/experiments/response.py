@@ -48,7 +48,8 @@ def response(
 
     Returns:
         Arrays over the states of the test, in SI units: length, contraction, force, pressure, volume,
-        energy_bending_1, energy_bending_2, energy_twist, energy_chamber, energy, peak_fibre_tension, largest_radius.
+        energy_bending_1, energy_bending_2, energy_twist, energy_chamber, energy, air_volume, peak_fibre_tension,
+        largest_radius.
         A state that was not reached is NaN and its derivatives are not finite; they do not touch those of the others.
         States are symmetric and are not judged: `run` says which ones are stable and admissible.
 

@@ -49,9 +49,9 @@ def sensitivity(
     Args:
         muscle: the specification.
         test: as for `run`; not along a branch.
-        of: results: length, contraction, force, pressure, volume, energy (or one of its parts), peak_fibre_tension,
-            largest_radius. By default what the test is for (the force, or length and contraction where the force is
-            held) and the peak fibre tension.
+        of: results: length, contraction, force, pressure, volume, air_volume, energy (or one of its parts),
+            peak_fibre_tension, largest_radius. By default what the test is for (the force, or length and contraction
+            where the force is held) and the peak fibre tension.
         by: numbers, such as "braid.angle", "chamber.law.c1", "test.pressure"; a name stands for all within it
             ("chamber"). By default every number on which one of the results depends.
         state: which state of the test, counted from 0, or from the last one as -1.

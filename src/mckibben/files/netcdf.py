@@ -19,7 +19,7 @@ import numpy as np
 from mckibben import disk
 from mckibben.files.seal import SIGNATURE, Parts, damage, sealed
 from mckibben.results.result import Result
-from mckibben.results.variables import COORDINATES, FIELDS, OPTIONAL, VARIABLES, about_variable, dimensions, has
+from mckibben.results.variables import COORDINATES, FIELDS, LATER, OPTIONAL, VARIABLES, about_variable, dimensions, has
 from mckibben.spec import Muscle, Test
 from mckibben.spec.errors import SpecError
 from mckibben.spec.plausible import trusted
@@ -129,6 +129,9 @@ def _checked(name: str, stored: xr.Dataset) -> xr.Dataset:
         dims = dimensions(variable)
         if variable in OPTIONAL and variable not in stored.data_vars:
             continue
+        if variable in LATER and variable not in stored.data_vars:
+            variables[variable] = (dims, _absent(stored, dims), about_variable(variable))
+            continue
         if variable not in stored.data_vars or stored[variable].dims != dims:
             raise SpecError(
                 name, allowed=f"holds no {variable} per {' and '.join(dims)} (written by mckibben {writer})"
@@ -143,6 +146,13 @@ def _checked(name: str, stored: xr.Dataset) -> xr.Dataset:
 
 _KINDS = {"verdict": "UOT", "reason": "UOT", "shape": "UOT", "converged": "b"}
 """NumPy's letters of the kinds of data that a variable may have in a file: text in three forms, or booleans."""
+
+
+def _absent(stored: xr.Dataset, dims: tuple[str, ...]) -> np.ndarray:
+    """NaN for a variable of a later version."""
+    array = np.full(tuple(stored.sizes.get(dim, 0) for dim in dims), np.nan)
+    array.flags.writeable = False
+    return array
 
 
 def _array(name: str, variable: xr.DataArray) -> np.ndarray:

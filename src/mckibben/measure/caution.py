@@ -8,11 +8,11 @@ import numpy as np
 
 from mckibben.compiled.arrays import Array
 from mckibben.compiled.kernel import kernel
-from mckibben.model.chamber import chamber_pull
 from mckibben.model.cylinder import cylinder_angle, cylinder_force
 from mckibben.model.kinematics import radius
 from mckibben.model.parameters import Number, Parameters, parameters
 from mckibben.model.point import Point
+from mckibben.model.wall import chamber_pull, contact_pressure
 from mckibben.model.wrinkling import wrinkling
 from mckibben.spec import Muscle, SpecError, Step
 from mckibben.units import show
@@ -36,6 +36,8 @@ THICK_WALL = 0.2
 """Wall over radius above which a thin wall is a coarse assumption: stretches vary by about this much across it."""
 STRONG = 1e7
 """Pressure [Pa] above what built muscles hold; hydraulic ones work up to some 50 bar."""
+TOUCHING = 1.0
+"""Pull between chamber and mesh [Pa] below which it is a rounding error."""
 SLENDER = 5.0
 """Length over diameter above which a muscle in compression may bow like a column."""
 
@@ -46,7 +48,8 @@ def cautions(muscle: Muscle, *, length: Any, pressure: Any) -> tuple[str, ...]:
     """Cautions about a target before anything is solved, judged by the uniform cylinder of the target length.
 
     Thick wall, wrinkling, jammed fibres, a column in compression, fibre tension above the breaking force if one is
-    given, and a pressure above 100 bar. A result carries the cautions of its own states.
+    given, a pressure above 100 bar, and one too low for a chamber inside the braid to touch it. A result carries the
+    cautions of its own states.
 
     Args:
         muscle: the specification.
@@ -68,9 +71,15 @@ def cautions(muscle: Muscle, *, length: Any, pressure: Any) -> tuple[str, ...]:
         raise SpecError("cautions", allowed="length and pressure must be one value each")
     h, P = (float(getattr(step, name).waypoints[0]) for name in ("length", "pressure"))
     cylinder = predicted(parameters(muscle), np.asarray(h), np.asarray(P))
-    theta, r, force, pull = (float(x) for x in cylinder[2:])
+    force = float(cylinder.force)
     steps = {name: np.array([float(value)]) for name, value in (("length", h), ("pressure", P), ("force", force))}
-    fields = {name: np.array([[float(value)]]) for name, value in (("theta", theta), ("r", r), ("fibre_tension", pull))}
+    of = {
+        "theta": cylinder.theta,
+        "r": cylinder.r,
+        "fibre_tension": cylinder.pull,
+        "contact_pressure": cylinder.contact,
+    }
+    fields = {name: np.array([[float(value)]]) for name, value in of.items()}
     return (*before(muscle, h, P), *after(muscle, steps, fields))
 
 
@@ -83,6 +92,7 @@ class Predicted(NamedTuple):
     r: Number  #: radius [m]
     force: Number  #: [N]
     pull: Number  #: tension of a fibre [N]
+    contact: Number  #: pressure of the chamber on the mesh [Pa]
 
 
 @partial(kernel, static_argnums=())
@@ -92,7 +102,7 @@ def predicted(p: Parameters, length: Array, pressure: Array) -> Predicted:
     at, force = Point.cylinder(theta), cylinder_force(theta, pressure, p)
     r = radius(at, p)
     pull = (force + jnp.pi * r**2 * pressure - chamber_pull(at, p)) / (p.N * jnp.sin(theta))
-    return Predicted(*wrinkling(length, pressure, p), theta, r, force, pull)
+    return Predicted(*wrinkling(length, pressure, p), theta, r, force, pull, contact_pressure(at, pressure, p))
 
 
 def before(muscle: Muscle, length: float | None, pressure: float) -> list[str]:
@@ -111,16 +121,25 @@ def before(muscle: Muscle, length: float | None, pressure: float) -> list[str]:
 
 
 def thick_wall(muscle: Muscle) -> list[str]:
-    """The chamber's wall against the thin-wall assumption."""
-    if muscle.chamber is None or muscle.chamber.thickness <= THICK_WALL * muscle.braid.radius:
+    """The chamber's wall against the thin-wall assumption, where it is made."""
+    chamber = muscle.chamber
+    if chamber is None or chamber.thick:
         return []
-    ratio = muscle.chamber.thickness / muscle.braid.radius
+    ratio = chamber.wall_thickness / chamber.riding_radius(muscle.braid.radius)
+    if ratio <= THICK_WALL:
+        return []
+    if chamber.thickness is None:
+        return [
+            f"the wall of the tube is {ratio:.2f} of its outer radius: it is taken as thin (below {THICK_WALL:g}) "
+            'without wall = "thick"'
+        ]
     return [f"chamber.thickness is {ratio:.2f} of the radius: the model takes the wall as thin (below {THICK_WALL:g})"]
 
 
 def after(muscle: Muscle, steps: Columns, fields: Columns) -> list[str]:
-    """Cautions that a result gives rise to: jamming, column buckling, broken fibres, pressure; with the first state."""
-    return [*jamming(muscle, steps, fields), *column(steps, fields), *breaking(muscle, steps, fields), *strong(steps)]
+    """Cautions that a result gives rise to: jamming, column buckling, broken fibres, pressure, dead zone."""
+    found = [*jamming(muscle, steps, fields), *column(steps, fields), *breaking(muscle, steps, fields), *strong(steps)]
+    return [*found, *apart(muscle, steps, fields)]
 
 
 def jamming(muscle: Muscle, steps: Columns, fields: Columns) -> list[str]:
@@ -148,6 +167,23 @@ def breaking(muscle: Muscle, steps: Columns, fields: Columns) -> list[str]:
     return _first((fields["fibre_tension"] > strength).any(axis=1), steps, said)
 
 
+def apart(muscle: Muscle, steps: Columns, fields: Columns) -> list[str]:
+    """A chamber inside the braid that would not touch it; the paper's is part of the mesh and has no such states."""
+    if muscle.chamber is None or not muscle.chamber.inside:
+        return []
+    least = fields["contact_pressure"].min(axis=1)
+    states = np.flatnonzero(least < -TOUCHING)
+    if not len(states):
+        return []
+    k = int(states[0])
+    more = f" and {len(states) - 1} more" if len(states) > 1 else ""
+    touches = show(float(steps["pressure"][k] - least[k]), "Pa", 3)
+    return [
+        f"state {k} ({_place(steps, k)}){more}: the chamber would not touch the braid everywhere (dead zone), and the "
+        f"model holds the two together; in the shape of state {k} it touches from about {touches}"
+    ]
+
+
 def strong(steps: Columns) -> list[str]:
     """A pressure that no muscle was built for, so that most likely the unit is wrong."""
     said = f"the pressure is above {show(STRONG, 'Pa')}, more than built muscles hold; the model knows no bursting"
@@ -159,5 +195,8 @@ def _first(hit: Any, steps: Columns, said: str) -> list[str]:
     if not len(states):
         return []
     k = int(states[0])
-    at = f"{show(float(steps['length'][k]), 'm', 4)}, {show(float(steps['pressure'][k]), 'Pa', 4)}"
-    return [f"from state {k} ({at}) on: {said}"]
+    return [f"from state {k} ({_place(steps, k)}) on: {said}"]
+
+
+def _place(steps: Columns, k: int) -> str:
+    return f"{show(float(steps['length'][k]), 'm', 4)}, {show(float(steps['pressure'][k]), 'Pa', 4)}"

@@ -19,13 +19,13 @@ from mckibben.discretise.fields import Placed, place, points_at, variables
 from mckibben.discretise.fields import known as with_sines
 from mckibben.measure.peak import peak
 from mckibben.model.angle import cos, radians, slope
-from mckibben.model.chamber import chamber_density, chamber_pull
 from mckibben.model.energy import fittings_density, lagrangian
 from mckibben.model.fibres import axial_density, fibre_densities
-from mckibben.model.kinematics import fibre_strains, height_rate, radius, stretches, volume_rate
+from mckibben.model.kinematics import fibre_strains, height_rate, radius, volume_rate
 from mckibben.model.parameters import Number, Parameters
 from mckibben.model.point import Point
 from mckibben.model.tension import conserved, tension
+from mckibben.model.wall import chamber_density, chamber_pull, chamber_stretches, contact_pressure
 from mckibben.solver.newton import batch_size, positive
 from mckibben.solver.problem import Basis
 from mckibben.solver.stability import stiffnesses
@@ -88,6 +88,7 @@ def read(basis: Basis, on: Placed, state: Unknowns) -> Reading:
         "length": length, "contraction": 1.0 - length / p.H0, "force": F, "pressure": P, "volume": volume,
         **{f"energy_{name}": part for name, part in zip(names, parts, strict=True)}, "energy": sum(parts),
         "peak_fibre_tension": tallest[0], "largest_radius": tallest[1],
+        "air_volume": volume if p.tube is None else volume - p.tube.rubber,
     }  # fmt: skip
     return Reading(numbers, found, jnp.abs(found["psi"]).max(), variation, basis.tail(state.u))
 
@@ -149,7 +150,7 @@ def _costates(
 def _fields(at: Point, costates: Costates, F: Number, P: Number, p: Parameters) -> dict[str, Number]:
     density = _densities(at, p)
     bending1, bending2, twist = (density[name] for name in ENERGIES[:3])
-    hoop, axial, thickness = stretches(at, p)
+    hoop, axial, thickness = chamber_stretches(at, p)
     u1, u2, u3 = fibre_strains(at, p)
     chamber_axial = chamber_pull(at, p) * cos(at.psi)
     total_axial = F + jnp.pi * radius(at, p) ** 2 * P
@@ -166,6 +167,7 @@ def _fields(at: Point, costates: Costates, F: Number, P: Number, p: Parameters) 
         "density_fibres": bending1 + bending2 + twist, "density_chamber": density["chamber"],
         "fibre_tension": tension(at, costates, F, P, p),
         "share_chamber": chamber_axial / total_axial, "share_mesh": 1.0 - chamber_axial / total_axial,
+        "contact_pressure": contact_pressure(at, P, p),
     }  # fmt: skip
 
 

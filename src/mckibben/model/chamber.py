@@ -7,15 +7,12 @@ use that the product of the stretches is 1. To add a law, see docs/adding_a_law.
 from collections.abc import Callable
 from typing import Any
 
-import jax
 import jax.numpy as jnp
 
-from mckibben.model.kinematics import stretches
-from mckibben.model.parameters import Number, Parameters
-from mckibben.model.point import Point
+from mckibben.model.parameters import Number
 from mckibben.spec.laws import ArrudaBoyce, CustomLaw, Gent, MooneyRivlin, NeoHookean, Ogden, Yeoh
 
-__all__ = ["LAWS", "chamber_density", "chamber_pull", "energy_density"]
+__all__ = ["LAWS", "energy_density"]
 
 
 def mooney_rivlin(l1: Number, l2: Number, l3: Number, law: MooneyRivlin) -> Number:
@@ -82,14 +79,3 @@ LAWS: dict[type, Callable[[Number, Number, Number, Any], Number]] = {
 def energy_density(l1: Number, l2: Number, l3: Number, law: Any) -> Number:
     """Energy per unit reference volume [Pa] at three principal stretches; zero for the bare braid, without a law."""
     return 0.0 * l1 if law is None else LAWS[type(law)](l1, l2, l3, law)
-
-
-def chamber_density(at: Point, p: Parameters) -> Number:
-    """Energy of the chamber per unit v [J/m]: A0 psi(C) (Eq. 26)."""
-    return p.A0 * energy_density(*stretches(at, p), p.law)
-
-
-def chamber_pull(at: Point, p: Parameters) -> Number:
-    """Meridian force of the chamber [N]: A0 d(psi)/d(lambda2) at fixed hoop stretch."""
-    hoop, axial, _ = stretches(at, p)
-    return p.A0 * jax.grad(lambda a: energy_density(hoop, a, 1.0 / (hoop * a), p.law))(axial)

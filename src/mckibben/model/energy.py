@@ -11,11 +11,11 @@ import jax
 import jax.numpy as jnp
 
 from mckibben.compiled.arrays import Array
-from mckibben.model.chamber import chamber_density
 from mckibben.model.fibres import axial_density, fibre_densities
 from mckibben.model.kinematics import closure_rate, height_rate, volume_rate
 from mckibben.model.parameters import Number, Parameters
 from mckibben.model.point import Point
+from mckibben.model.wall import chamber_density
 
 __all__ = ["LOADS", "QUANTITIES", "fittings_density", "lagrangian", "remember", "scales", "stored", "works"]
 

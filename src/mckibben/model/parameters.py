@@ -10,14 +10,15 @@ import jax.numpy as jnp
 import numpy as np
 
 from mckibben.model import pytrees
+from mckibben.spec.chamber import Chamber
 from mckibben.spec.laws import NeoHookean, Rubber
-from mckibben.spec.muscle import Muscle
+from mckibben.spec.muscle import Braid, Muscle
 from mckibben.units import is_traced
 
 jax.config.update("jax_enable_x64", True)  # before anything is computed: every module of mechanics imports this one
 pytrees.register()
 
-__all__ = ["Number", "Parameters", "functions", "numbers", "parameters", "static_braid"]
+__all__ = ["Number", "Parameters", "Tube", "functions", "numbers", "parameters", "static_braid"]
 
 Number = Any
 """A float, a NumPy or JAX scalar, or a tracer."""
@@ -26,6 +27,15 @@ Number = Any
 def functions(*values: Number) -> Any:
     """NumPy for plain numbers and arrays, where nothing is to be compiled; `jax.numpy` where JAX is in a value."""
     return jnp if any(is_traced(value) for value in values) else np
+
+
+class Tube(NamedTuple):
+    """How the chamber differs from the paper's: where it lies, what it is mounted at, how its wall is taken."""
+
+    hoop: Number  #: hoop stretch of the face that rides on the braid, as mounted: R0 over its radius as made
+    axial: Number  #: axial stretch as mounted: H0 over the length as made
+    rubber: Number  #: volume of rubber inside the braid [m^3]
+    across: Number | None  #: (radius of the other face over that of the one that rides)^2 as made; None: a thin wall
 
 
 class Parameters(NamedTuple):
@@ -39,8 +49,9 @@ class Parameters(NamedTuple):
     B2: Number  #: bending stiffness normal to the surface [N m^2]
     B3: Number  #: torsional stiffness [N m^2]
     helical: Number  #: 1 if the initial helix is stress-free, 0 if the straight fibre is
-    A0: Number  #: area of the chamber's wall in the initial cross-section [m^2] (Eq. 26)
+    A0: Number  #: volume of the chamber's wall per unit v [m^2]: the area of its cross-section as made (Eq. 26)
     law: Any  #: law of the chamber: its kind is static, its constants are leaves; None for the bare braid
+    tube: Tube | None = None  #: a chamber that is not the paper's; None takes the way of the paper, to the last bit
     EA: Any = None  #: axial stiffness of a fibre [N]; None where the fibres do not stretch
     slack: Any = None  #: 1 if a fibre carries no compression, 0 if it does
     compliance: Any = None  #: of both fittings together [m/N]; None where they are rigid
@@ -60,12 +71,14 @@ def numbers(muscle: Muscle) -> Parameters:
     """Numbers of a muscle as they are in its specification, floats or traced."""
     braid, fibre, chamber = muscle.braid, muscle.braid.fibre, muscle.chamber
     B1, B2, B3 = fibre.stiffnesses
-    thickness = 0.0 if chamber is None else chamber.thickness
+    tube = None if chamber is None else _tube(chamber, braid)
+    area = 0.0 * braid.radius if chamber is None else chamber.area(braid.radius)
     return Parameters(
         braid.radius, braid.length, braid.angle, braid.fibres, B1, B2, B3,
         1.0 if fibre.natural == "helical" else 0.0,
-        np.pi * thickness * (thickness + 2.0 * braid.radius),
+        area if tube is None else area / tube.axial,
         None if chamber is None else _law(chamber.law),
+        tube,
         fibre.EA,
         (1.0 if fibre.slack else 0.0) if fibre.stretch else None,
         None if muscle.fittings is None else muscle.fittings.compliance,
@@ -75,6 +88,16 @@ def numbers(muscle: Muscle) -> Parameters:
 def _law(law: Any) -> Any:
     """The law as the energy knows it: rubber is neo-Hookean, wherever its one constant comes from."""
     return pytrees.made(NeoHookean, {"c1": law.c1}) if isinstance(law, Rubber) else law
+
+
+def _tube(chamber: Chamber, braid: Braid) -> Tube | None:
+    """What makes the chamber another than the paper's; None where nothing does."""
+    if not chamber.inside and not chamber.thick and chamber.length is None:
+        return None
+    hoop, axial = chamber.stretches(braid.radius, braid.length)
+    area = chamber.area(braid.radius)
+    rubber = area * braid.length / axial if chamber.inside else 0.0 * area
+    return Tube(hoop, axial, rubber, chamber.other_face(braid.radius) if chamber.thick else None)
 
 
 def static_braid(p: Parameters) -> Number:

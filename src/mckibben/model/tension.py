@@ -17,12 +17,12 @@ import jax
 import jax.numpy as jnp
 
 from mckibben.model.angle import cos, radians, sin, slope
-from mckibben.model.chamber import chamber_pull
 from mckibben.model.energy import lagrangian
 from mckibben.model.fibres import axial_force, fibre_densities
 from mckibben.model.kinematics import angle_rate, fibre_strains, radius, stretch_rate
 from mckibben.model.parameters import Number, Parameters
 from mckibben.model.point import Point
+from mckibben.model.wall import chamber_pull
 
 __all__ = ["conserved", "tension"]
 

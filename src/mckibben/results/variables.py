@@ -10,6 +10,7 @@ STEP: dict[str, tuple[str, str]] = {
     "force": ("N", "axial force, positive in tension"),
     "pressure": ("Pa", "gauge pressure"),
     "volume": ("m^3", "volume inside the braid"),
+    "air_volume": ("m^3", "volume inside the braid without the rubber that lies inside"),
     "energy_bending_1": ("J", "fibre energy, bending in the tangent plane"),
     "energy_bending_2": ("J", "fibre energy, bending normal to the surface"),
     "energy_twist": ("J", "fibre energy, twist"),
@@ -56,6 +57,7 @@ FIELDS: dict[str, tuple[str, str]] = {
     "roll": ("rad", "angle by which a fibre's section has turned about the fibre"),
     "share_mesh": ("1", "share of the axial load F + pi r^2 P carried by the mesh"),
     "share_chamber": ("1", "share of the axial load F + pi r^2 P carried by the chamber"),
+    "contact_pressure": ("Pa", "pressure of the chamber on the mesh, below 0 where it would not touch"),
 }
 """Variables along the material coordinate v: unit and meaning."""
 
@@ -63,7 +65,7 @@ OBSERVED: dict[str, tuple[str, str]] = {
     name: STEP[name]
     for name in (
         "length", "contraction", "force", "pressure", "volume", "energy_bending_1", "energy_bending_2", "energy_twist",
-        "energy_chamber", "energy",
+        "energy_chamber", "energy", "air_volume",
     )
 } | {
     "peak_fibre_tension": ("N", "largest tension of a fibre along its length"),
@@ -94,6 +96,8 @@ def has(muscle: Muscle, name: str) -> bool:
 
 
 VARIABLES = STEP | FIELDS
+LATER = ("air_volume", "contact_pressure")
+"""Variables that files of earlier versions do not hold; NaN there."""
 COORDINATES = {"step": ("", "state"), "v": ("m", "axial material coordinate")}
 
 

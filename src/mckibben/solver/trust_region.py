@@ -142,6 +142,8 @@ class _Point:
         if not task.admissible(d.theta):
             return None
         totals, gradients = np.asarray(d.totals), np.asarray(d.gradients) @ inverse
+        if not np.isfinite(gradients).all():
+            return None
         held = list(task.held)
         free = [k for k in range(1, len(totals)) if k not in held]
         gradient = gradients[0] - loads[free] @ gradients[free]

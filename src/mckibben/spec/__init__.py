@@ -1,7 +1,10 @@
 """The specification: the muscle and the test that a user describes, immutable and checked, in SI numbers."""
 
+from mckibben.spec.chamber import Chamber, Side, Wall
 from mckibben.spec.declared import describe, numbers, walk
+from mckibben.spec.ends import Ends
 from mckibben.spec.errors import SpecError
+from mckibben.spec.fibre import Fibre
 from mckibben.spec.fields import spec_classes
 from mckibben.spec.fittings import Fittings
 from mckibben.spec.laws import LAWS, ArrudaBoyce, CustomLaw, Gent, Law, MooneyRivlin, NeoHookean, Ogden, Rubber, Yeoh
@@ -18,7 +21,7 @@ from mckibben.spec.loading import (
     Step,
     Test,
 )
-from mckibben.spec.muscle import Braid, Chamber, Ends, Fibre, Joint, Muscle
+from mckibben.spec.muscle import Braid, Joint, Muscle
 from mckibben.spec.path import Path, PathMode
 from mckibben.spec.reference import reference_markdown
 
@@ -50,9 +53,11 @@ __all__ = [
     "PathMode",
     "Protocol",
     "Rubber",
+    "Side",
     "SpecError",
     "Step",
     "Test",
+    "Wall",
     "Yeoh",
     "describe",
     "numbers",

@@ -111,7 +111,7 @@ class Declared:
         return value == 0.0 or self.size[0] <= abs(value) <= self.size[1]
 
 
-def declare(declared: Declared) -> Any:
+def declare(declared: Declared, kw_only: bool = False) -> Any:
     """An attrs field whose values are read and checked as `declared` says."""
 
     def convert(value: Any, instance: Any, attribute: Any) -> Any:
@@ -120,7 +120,8 @@ def declare(declared: Declared) -> Any:
         return declared.read(value, f"{instance.__spec_path__}.{attribute.name}", declared)
 
     converter: Any = attrs.Converter(convert, takes_self=True, takes_field=True)
-    return attrs.field(default=declared.default, converter=converter, metadata={"declared": declared})
+    about = {"declared": declared}
+    return attrs.field(default=declared.default, converter=converter, metadata=about, kw_only=kw_only)
 
 
 def evolved(value: T, **changes: Any) -> T:

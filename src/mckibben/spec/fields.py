@@ -203,9 +203,12 @@ def _read_part(value: Any, field: str, declared: Declared) -> Any:
     raise SpecError(field, value, f"must be a {names}", advice)
 
 
-def part(*kinds: type, meaning: str, default: Any = attrs.NOTHING, quiet: bool = False) -> Any:
-    """A field that holds another spec object, of one of `kinds`."""
-    return declare(Declared(kind="part", read=_read_part, meaning=meaning, parts=kinds, default=default, quiet=quiet))
+def part(
+    *kinds: type, meaning: str, default: Any = attrs.NOTHING, quiet: bool = False, kw_only: bool = False
+) -> Any:  # fmt: skip
+    """A field that holds another spec object, of one of `kinds`; `kw_only` where fields before it may be left out."""
+    declared = Declared(kind="part", read=_read_part, meaning=meaning, parts=kinds, default=default, quiet=quiet)
+    return declare(declared, kw_only)
 
 
 @dataclass_transform(

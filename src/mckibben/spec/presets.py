@@ -13,9 +13,11 @@ from __future__ import annotations
 
 from collections.abc import Callable
 
+from mckibben.spec.chamber import Chamber
 from mckibben.spec.errors import SpecError, nearest
+from mckibben.spec.fibre import Fibre
 from mckibben.spec.laws import MooneyRivlin
-from mckibben.spec.muscle import Braid, Chamber, Fibre, Muscle
+from mckibben.spec.muscle import Braid, Muscle
 
 __all__ = ["get", "names", "paper", "reference", "sources"]
 

@@ -18,6 +18,7 @@ from mckibben.model.parameters import Parameters, numbers
 from mckibben.spec import Along, BlockedForce, Braid, CustomLaw, Ends, Muscle, Path, Protocol, SpecError, Step, Test
 from mckibben.spec import numbers as leaves_of
 from mckibben.spec.angle import from_parallels
+from mckibben.spec.limits import certainly_fits
 from mckibben.spec.vary import changed
 from mckibben.sweeps.plan import Piece
 
@@ -162,6 +163,8 @@ def _valid(muscle: Muscle) -> Any:
     if diameter is not None:
         room = 2.0 * np.pi * braid.radius * np.sin(braid.angle)
         good = good & (0.5 * np.asarray(braid.fibres) * diameter <= FITS * room)
+    if muscle.chamber is not None:
+        good = good & certainly_fits(braid, muscle.chamber)
     if muscle.chamber is not None and not isinstance(muscle.chamber.law, CustomLaw):
         good = good & (np.asarray(muscle.chamber.law.shear_modulus) > 0.0)
     return good
