@@ -1,5 +1,6 @@
 """What the assembler gives (totals, gradients, tangents) against another quadrature and central differences."""
 
+import attrs
 import jax
 import jax.numpy as jnp
 import numpy as np
@@ -23,6 +24,10 @@ pytestmark = pytest.mark.solver
 
 REFERENCE = mk.presets.reference()
 GENT = REFERENCE.replace("chamber.law", mk.Gent(mu="0.1 MPa", Jm=8.0))
+FIBRE = attrs.evolve(REFERENCE.braid.fibre, stretch=True, axial_stiffness="150 N")
+STRETCHING = REFERENCE.replace("braid.fibre", FIBRE)
+ROLLING = REFERENCE.replace("braid.joint", "pin")
+ALL = STRETCHING.replace("braid.joint", "pin").replace("fittings", mk.Fittings(compliance="0.01 mm/N"))
 CASES = {
     "clamped": (REFERENCE, Line(24, "clamped")),
     "pinned": (REFERENCE, Line(24, "pinned")),
@@ -31,6 +36,10 @@ CASES = {
     "spline": (REFERENCE, Spline(23, "clamped")),
     "clamped, gent": (GENT, Line(24, "clamped")),
     "spline, gent": (GENT, Spline(23, "clamped")),
+    "stretching, pinned": (STRETCHING.replace("ends", "pinned"), Line(16, "pinned", stretch=True)),
+    "stretching, free": (STRETCHING.replace("ends", "free"), Line(16, "free", stretch=True)),
+    "rolling": (ROLLING, Line(16, "clamped", roll=True)),
+    "all effects, full length": (ALL, Line(24, "clamped", "all", stretch=True, roll=True, give=True)),
 }
 EVERY = pytest.mark.parametrize("case", CASES)
 CROWDING, STEP = 2.0, 2e-3
@@ -106,23 +115,26 @@ def test_totals(case: str) -> None:
         np.testing.assert_allclose(found[:n], expected[:n], rtol=0.0, atol=1e-10 if isinstance(basis, Line) else 2e-5)
 
 
+@pytest.mark.parametrize("muscle", [REFERENCE, STRETCHING, ROLLING], ids=["paper", "stretching", "rolling"])
 @pytest.mark.parametrize("ends", ["clamped", "free"])
-def test_antisymmetric_tangent_is_the_even_block_of_the_full_line(ends: str) -> None:
+def test_antisymmetric_tangent_is_the_even_block_of_the_full_line(ends: str, muscle: mk.Muscle) -> None:
     """At a symmetric state, among disturbances that keep the end radii equal (or turn both free ends by as much)."""
-    muscle = REFERENCE.replace("ends", ends)
-    half, full = problem_of(muscle, Line(24, ends)), problem_of(muscle, Line(48, ends, "all"))
+    muscle = muscle.replace("ends", ends)
+    line = Line.of(muscle, 24)
+    half, full = problem_of(muscle, line), problem_of(muscle, attrs.evolve(line, size=48, modes="all"))
     held = Held.of(length=0.100, pressure=1e5)
     one, two = find(half, held), find(full, held)
     small = of_states(half, one.u[None], one.loads[None])
     big = full.evaluate(two.u)
-    odd, even = np.arange(1, 48, 2), np.arange(0, 48, 2)
-    if ends == "free":  # its angle is the last unknown
-        odd, even = np.append(odd, 48), np.append(even, 48)
-    else:
-        np.testing.assert_allclose(big.gradients[CLOSURE, even], 2.0 * small.closure[0], atol=1e-13)
-    np.testing.assert_allclose(two.u[odd], one.u, atol=1e-13)
+    series, last = len(line.series), np.arange(48 * len(line.series), full.basis.unknowns)  # then what the ends do
+    odd, even = (
+        np.append((np.arange(first, 48, 2) + 48 * np.arange(series)[:, None]).ravel(), last) for first in (1, 0)
+    )
+    if ends == "clamped":
+        np.testing.assert_allclose(big.gradients[CLOSURE, even], 2.0 * small.closure[0, -1], atol=1e-13)
+    np.testing.assert_allclose(two.u[odd], one.u, atol=1e-12)
     signs = np.concatenate([[1.0], -two.loads, np.zeros(3 - len(two.loads))])
-    keep, K = null_space(np.asarray(small.closure)), np.tensordot(signs, np.asarray(big.tangents), 1)
+    keep, K = null_space(np.asarray(small.closure[0])), np.tensordot(signs, np.asarray(big.tangents), 1)
     antisymmetric = keep.T @ np.asarray(small.antisymmetric[0]) @ keep
     found = keep.T @ K[np.ix_(even, even)] @ keep
     np.testing.assert_allclose(found, antisymmetric, rtol=0.0, atol=2e-11 * np.abs(antisymmetric).max())

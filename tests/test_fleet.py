@@ -79,7 +79,7 @@ def joined(asked: list[Group | None]) -> Group:
     assert all(one is not None for one in asked)
     p = jax.tree.map(lambda *each: np.concatenate(each), *(one.p for one in asked))
     rows = (np.concatenate([getattr(one, name) for one in asked]) for name in ("wanted", "corners"))
-    return Group(np.arange(len(asked)), p, asked[0].ends, asked[0].held, *rows)
+    return Group(np.arange(len(asked)), p, asked[0].line, asked[0].held, *rows)
 
 
 def by_design(found: list[Solved]) -> dict[int, np.ndarray]:
@@ -126,7 +126,7 @@ def test_groups_have_the_numbers_of_the_designs_one_by_one() -> None:
             continue
         group, d = found[k]
         alone = group_of(*design)
-        assert (alone.ends, alone.held) == (group.ends, group.held)
+        assert (alone.line, alone.held) == (group.line, group.held)
         for one, many in zip(jax.tree.leaves(alone.p), jax.tree.leaves(group.p), strict=True):
             assert float(one[0]) == float(many[d])
         np.testing.assert_array_equal(alone.wanted[0], group.wanted[d])

@@ -21,6 +21,8 @@ _PUBLIC = {
     "mckibben.experiments.textbook": ("textbook_force",),
     "mckibben.experiments.response": ("response",),
     "mckibben.experiments.sensitivity": ("sensitivity",),
+    "mckibben.experiments.effects": ("effects",),
+    "mckibben.results.effects": ("Effects",),
     "mckibben.results.sensitivity": ("Sensitivity",),
     "mckibben.view.plot": ("plot",),
     "mckibben.results.result": ("Result", "State"),

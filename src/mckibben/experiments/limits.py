@@ -54,7 +54,8 @@ class Limits:
         shortest_cause: why no shorter state is admissible, in words.
         stable_down_to: length of the shortest stable state [m], also where its wall is behind its fitting.
         stable_force: force there [N].
-        longest: full extension [m]: there is no equilibrium at this length or beyond.
+        longest: full extension [m]: there is no equilibrium at this length or beyond. NaN where fibres stretch or
+            fittings give way, which sets no such limit.
         force_extremum: least force [N], that is the largest push, on the way to the shortest length.
         force_extremum_length: length there [m].
 
@@ -98,7 +99,8 @@ def limits(muscle: Muscle, *, pressure: Any) -> Limits:
     'the shape gives way to one side: ...'
     """
     P, bench = _value("pressure", pressure), Bench.of(muscle)
-    nothing = Limits(P, *(np.nan,) * 2, "", *(np.nan,) * 2, bench.longest, *(np.nan,) * 2)
+    longest = bench.longest if np.isfinite(bench.longest) else np.nan
+    nothing = Limits(P, *(np.nan,) * 2, "", *(np.nan,) * 2, longest, *(np.nan,) * 2)
     stable = _shorten(bench, P, shapes=False)
     if stable.last is None:
         return attrs.evolve(nothing, shortest_cause=stable.cause.reason)

@@ -12,6 +12,9 @@ from mckibben.spec import Muscle, SpecError
 from mckibben.spec.text import muscle_from_mapping
 from mckibben.view import style
 
+ENDLESS = 1.5
+"""Length over the initial one up to which a region without a longest length is drawn."""
+
 
 def region(limits: xr.Dataset) -> Figure:
     """The working range that `working_range` found: lengths a muscle can be held at, per pressure."""
@@ -19,13 +22,16 @@ def region(limits: xr.Dataset) -> Figure:
     axes = figure.add_subplot()
     pressure = style.shown(limits["pressure"].values, "Pa")
     shortest, longest = (style.shown(limits[name].values, "m") for name in ("shortest", "longest"))
-    axes.fill_betweenx(pressure, shortest, longest, color=style.SKY, alpha=0.25, lw=0, label="admissible and stable")
+    muscle = _muscle(limits)
+    known, made = np.isfinite(longest), np.nan if muscle is None else style.shown(muscle.braid.length, "m")
+    beyond = np.where(known, longest, ENDLESS * made)  # fibres that stretch set no limit
+    axes.fill_betweenx(pressure, shortest, beyond, color=style.SKY, alpha=0.25, lw=0, label="admissible and stable")
     axes.plot(shortest, pressure, "o-", ms=2.5, color=style.BLUE, label="shortest")
     stable = style.shown(limits["stable_down_to"].values, "m")
     if (shortest - stable > 1e-3).any():  # not where they are NaN
         axes.plot(stable, pressure, ":", color=style.BLUE, label="stable, but behind its fitting")
-    axes.plot(longest, pressure, "--", color=style.VERMILLION, label="full extension")
-    muscle = _muscle(limits)
+    if known.any():
+        axes.plot(longest, pressure, "--", color=style.VERMILLION, label="full extension")
     if muscle is not None:
         axes.axvline(1e3 * muscle.braid.length, color="0.5", lw=0.8, label="initial length")
         style.assumption_note(figure, muscle)

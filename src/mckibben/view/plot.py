@@ -7,12 +7,14 @@ from typing import Any
 
 from matplotlib.figure import Figure
 
+from mckibben.results.effects import Effects
 from mckibben.results.result import Result, State
 from mckibben.results.sensitivity import Sensitivity
 from mckibben.spec import BlockedForce, FreeContraction, Path, Protocol
 from mckibben.spec.errors import SpecError, nearest
 from mckibben.units import show
 from mckibben.view import curves, maps, style
+from mckibben.view.effects import bars
 from mckibben.view.tornado import tornado
 
 __all__ = ["KINDS", "plot"]
@@ -25,18 +27,19 @@ KINDS: dict[str, Callable[[Result], Figure]] = {
     "shares": curves.shares,
 }
 """The pictures of a result."""
-_TAKES = "a result of run, solve, sensitivity, force_map or working_range"
+_TAKES = "a result of run, solve, sensitivity, effects, force_map or working_range"
 
 
 def plot(result: Any, kind: str = "auto") -> Figure:
-    """Draw what `run`, `solve`, `load`, `sensitivity`, `force_map` or `working_range` gave. Nothing is solved.
+    """Draw what `run`, `solve`, `load`, `sensitivity`, `effects`, `force_map` or `working_range` gave. Nothing is
+    solved.
 
     A result is drawn as the kind of its test asks for. Isometric and blocked: force against pressure. Isobaric: force
     against contraction. Isotonic and free contraction: contraction (and length) against pressure. Protocol and step:
     force, length and pressure state by state, and force against length. States that are not stable are marked; states
     that were not reached are gaps, with a note. A `State` is drawn as its radius and braid angle along the muscle, a
     force map as contours over length and pressure, a working range as the region in that plane, a sensitivity as a
-    tornado chart.
+    tornado chart, effects as bars.
 
     Args:
         result: what one of these calls gave, or several results of one kind of test by their names, as
@@ -67,7 +70,8 @@ def plot(result: Any, kind: str = "auto") -> Figure:
         return _headed(KINDS["profiles" if kind == "auto" else kind](result.result), result.result)
     if isinstance(result, Mapping) and not hasattr(result, "data_vars"):
         return _family(result, kind)
-    draw = tornado if isinstance(result, Sensitivity) else _of_dataset(result)
+    own: dict[type, Callable[[Any], Figure]] = {Sensitivity: tornado, Effects: bars}
+    draw = next((draw for kinds, draw in own.items() if isinstance(result, kinds)), None) or _of_dataset(result)
     if kind != "auto":
         raise SpecError("plot.kind", kind, "is for a result or a state", "leave it out")
     return draw(result)

@@ -1,0 +1,126 @@
+"""`mckibben effects`: which effects matter for a muscle."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated, Any
+
+import typer
+
+from mckibben.app.console import COMPLETE, command, examples, say, show_json, table
+
+if TYPE_CHECKING:
+    from mckibben.results.effects import Effects
+
+__all__ = ["EPILOG", "effects"]
+
+EPILOG = examples(
+    'mckibben effects case.toml --length "115 mm" --pressure "1 bar"',
+    'mckibben effects case.toml --contraction "10 %" --pressure "3 bar" -o effects.png',
+)
+OUTPUTS = {".csv": "table", ".png": "bar chart", ".pdf": "the same for print", ".svg": "the same for the web"}
+
+
+@command
+def effects(
+    case: Annotated[Path, typer.Argument(metavar="CASE.toml", help="the case file: a muscle")],
+    pressure: Annotated[str, typer.Option(metavar="PRESSURE", help='gauge pressure, such as "1 bar"')],
+    length: Annotated[str | None, typer.Option(metavar="LENGTH", help='such as "115 mm"')] = None,
+    contraction: Annotated[str | None, typer.Option(metavar="CONTRACTION", help="in place of the length")] = None,
+    overrides: Annotated[
+        list[str] | None,
+        typer.Option("--set", metavar="NAME=VALUE", help='change a value of the case, such as braid.angle="36 deg"'),
+    ] = None,
+    output: Annotated[
+        Path | None,
+        typer.Option("--output", "-o", metavar="FILE", help="a table (.csv) or a chart (.png, .pdf, .svg)"),
+    ] = None,
+    force: Annotated[bool, typer.Option("--force", help="replace the output file if it exists")] = False,
+    as_json: Annotated[
+        bool, typer.Option("--json", help="print one JSON object, in SI units, and nothing else")
+    ] = False,
+    quiet: Annotated[bool, typer.Option("--quiet", "-q", help="print nothing but errors")] = False,
+) -> int:
+    """Show how much each effect that can be switched on changes a muscle at one length and pressure.
+
+    Every effect is computed, with it and without. An effect that asks for a number that the case does not have says so.
+    """
+    from mckibben import disk
+    from mckibben.files import store
+    from mckibben.files.case import read_case
+
+    muscle = read_case(case, overrides or (), test_required=False).muscle
+    suffix = ""
+    if output is not None:
+        suffix = store.suffix_of(output, OUTPUTS)
+        disk.check_target(output, force)
+    from mckibben.app.solving import solving
+
+    with solving("effects", hidden=quiet or as_json):
+        from mckibben.experiments.effects import effects as experiment
+
+        found = experiment(muscle, length=length, contraction=contraction, pressure=pressure)
+    if not (quiet or as_json):
+        _show(found)
+    if output is not None:
+        disk.write(output, _picture(found, suffix), force)
+        if not (quiet or as_json):
+            say(f"saved to {output}")
+    if as_json:
+        show_json(_as_json(found, None if output is None else str(output)))
+    return COMPLETE
+
+
+def _picture(found: Effects, suffix: str) -> bytes:
+    if suffix == ".csv":
+        text: str = found.table.to_csv(index_label="effect")
+        return text.encode("utf-8")
+    import matplotlib
+
+    matplotlib.use("Agg")  # draws to files only, without a window
+    from mckibben.view import style
+    from mckibben.view.effects import bars
+
+    return style.picture(bars(found), suffix[1:])
+
+
+def _show(found: Effects) -> None:
+    """Print the table, the largest effect first, and what could not be told."""
+    frame = found.table
+    shown = {
+        "force [%]": "force",
+        "middle_radius [%]": "radius at\nmid-length",
+        "peak_fibre_tension [%]": "fibre\ntension",
+    }
+    cells = [
+        [name, *(f"{row[f'{key} [%]']:+.2f} %" for key in shown), f"{row['time']:.1f}", row["switch"]]
+        for name, row in frame.iterrows()
+        if not row["reason"]
+    ]
+    title = str(found.data.attrs["title"])
+    heads = ["effect", *shown.values(), "time", "to switch it on"]
+    say(table(heads, cells, title=title[0].upper() + title[1:], right=range(1, 5), whole=(0, 5)))
+    for name, row in frame.iterrows():
+        if row["reason"]:
+            say(f"{name}: {row['reason']}")
+    for name, assumed in zip(found.data["effect"].values, found.data["assumed"].values, strict=True):
+        if assumed:
+            say(f"{name}: the number is ASSUMED, put in your own")
+    say("changes by the effect, with it against without; time: of a state, over that without it")
+
+
+def _as_json(found: Effects, file: str | None) -> dict[str, Any]:
+    """All numbers in SI units, None for NaN."""
+    from mckibben.results.effects import QUANTITIES
+
+    data, rows = found.data, []
+    for k, name in enumerate(data["effect"].values.tolist()):
+        one = data.isel(effect=k)
+        values = {key: [None if v != v else v for v in one[key].values.tolist()] for key in QUANTITIES}
+        ratio = float(one["time"])
+        rows.append({
+            "effect": name, "switch": str(one["switch"].values), "assumed": bool(one["assumed"].values),
+            "reason": str(one["reason"].values), "time": None if ratio != ratio else ratio, **values,
+        })  # fmt: skip
+    units = {key: unit for key, (unit, _) in QUANTITIES.items()}
+    return {"length": found.length, "pressure": found.pressure, "file": file, "units": units, "effects": rows}

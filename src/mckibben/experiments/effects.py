@@ -1,0 +1,140 @@
+"""`effects()`: how much each effect that the paper leaves out matters for a muscle, computed with it and without."""
+
+from __future__ import annotations
+
+import time
+from typing import Any
+
+import attrs
+import numpy as np
+
+from mckibben.experiments.solve import solve
+from mckibben.results.effects import QUANTITIES, Effects
+from mckibben.results.result import State
+from mckibben.results.verdict import Verdict
+from mckibben.spec import Fittings, Muscle, SpecError, Step
+from mckibben.spec.text import to_toml
+from mckibben.units import show
+
+__all__ = ["EFFECTS", "Effect", "effects"]
+
+
+@attrs.frozen
+class Effect:
+    """One effect: the field that switches it, and what it says with and without."""
+
+    name: str
+    field: str
+    on: Any
+    off: Any
+    switch: str  #: what to write into a case file
+    assumed: bool = False  #: whether its size rests on a number that is not the muscle's own
+
+
+EFFECTS = (
+    Effect("stretch of the fibres", "braid.fibre.stretch", True, False, "braid.fibre.stretch = true"),
+    Effect("roll at the crossings", "braid.joint", "pin", "hinge", 'braid.joint = "pin"'),
+    Effect("wall inside the braid", "chamber.lies", "inside", "outside", 'chamber.lies = "inside"'),
+    Effect("thickness of the wall", "chamber.wall", "thick", "thin", 'chamber.wall = "thick"'),
+    Effect(
+        "fittings that give way", "fittings", Fittings(compliance="0.01 mm/N"), None,
+        'fittings.compliance = "0.01 mm/N"', assumed=True,
+    ),
+    Effect("ends that hold the radius", "ends", "clamped", "free", 'ends = "clamped"'),
+)  # fmt: skip
+"""What can be switched. The compliance is that of one measured membrane (theory page): put in your own."""
+
+
+def effects(muscle: Muscle, *, length: Any = None, contraction: Any = None, pressure: Any) -> Effects:
+    """The size of each effect for a muscle at a length and pressure: solved with it and without, nothing guessed.
+
+    Stretch and roll of the fibres, where the wall lies and how thick it is, fittings that give way, and the ends. What
+    a muscle already has is switched off for the comparison; the rest is switched on, one by one.
+
+    Args:
+        muscle: the specification.
+        length: distance between the fittings [m], a number or text with a unit.
+        contraction: in place of the length: 1 - h/H0.
+        pressure: gauge pressure [Pa], likewise.
+
+    Returns:
+        An `Effects`: its `table` has a row for each effect, the largest first, with changes in per cent, what to switch
+        on, and what that costs in time.
+
+    Raises:
+        SpecError: for wrong input, or where the muscle as it is has no stable state at this length and pressure.
+
+    >>> found = mk.effects(mk.presets.paper(), length="115 mm", pressure="1 bar")
+    >>> found.table.index[0]
+    'ends that hold the radius'
+    """
+    (step,) = Step(length=length, contraction=contraction, pressure=pressure, points=1).as_steps(muscle)  # type: ignore[call-arg]
+    if any(getattr(step, name).needs_present for name in step.controls):
+        raise SpecError("effects", allowed="length and pressure must be one value each")
+    held = {name: float(getattr(step, name).sample(1)[0]) for name in ("length", "pressure")}
+    base, pace = _timed(muscle, held)
+    if base.verdict != Verdict.STABLE:
+        raise SpecError("effects", allowed=f"the muscle is not stable there: {base.reason}", advice="ask for another")
+    rows = [_row(muscle, held, effect, base, pace) for effect in EFFECTS]
+    at = f"{show(held['length'], 'm')} and {show(held['pressure'], 'Pa')}"
+    about = {"title": f"size of effects at {at}", "muscle": to_toml(muscle, allow_custom=True)}
+    return Effects(muscle, held["length"], held["pressure"], _dataset(rows, about))
+
+
+def _timed(muscle: Muscle, held: dict[str, float]) -> tuple[State, float]:
+    """A state, and how long it takes once its functions are compiled [s]."""
+    solve(muscle, **held)
+    begin = time.perf_counter()
+    state = solve(muscle, **held)
+    return state, time.perf_counter() - begin
+
+
+def _row(muscle: Muscle, held: dict[str, float], effect: Effect, base: State, pace: float) -> dict[str, Any]:
+    """Numbers without and with one effect, or why there are none."""
+    row = {"effect": effect.name, "switch": effect.switch, "assumed": effect.assumed, "time": np.nan}
+    nothing = dict.fromkeys(QUANTITIES, (np.nan, np.nan))
+    try:
+        has = _has(muscle, effect)
+        other, seconds = _timed(muscle.replace(effect.field, effect.off if has else effect.on), held)
+    except SpecError as error:
+        return row | nothing | {"reason": str(error)}
+    if other.verdict != Verdict.STABLE:
+        return row | nothing | {"reason": f"{'without' if has else 'with'} it: {other.reason}"}
+    pair = (other, base) if has else (base, other)
+    ratio = pace / seconds if has else seconds / pace
+    numbers = {name: tuple(_number(state, name) for state in pair) for name in QUANTITIES}
+    return row | numbers | {"time": ratio, "reason": ""}
+
+
+def _has(muscle: Muscle, effect: Effect) -> bool:
+    """Whether the muscle has an effect; SpecError where that means nothing for it."""
+    owner: Any = muscle
+    *parts, last = effect.field.split(".")
+    for part in parts:
+        owner = getattr(owner, part)
+    if owner is None:
+        raise SpecError(effect.field, allowed="a bare braid has no chamber")
+    value = getattr(owner, last)
+    if effect.field == "chamber.lies":
+        value = "inside" if owner.inside else "outside"
+    return value is not None and value != effect.off
+
+
+def _number(state: State, name: str) -> float:
+    data = state.result.data.isel(step=0)
+    if name == "middle_radius":
+        return float(data["r"][data.sizes["v"] // 2])
+    return float(data["fibre_tension"].max() if name == "peak_fibre_tension" else data[name])
+
+
+def _dataset(rows: list[dict[str, Any]], about: dict[str, Any]) -> Any:
+    import xarray as xr  # here, because it takes half a second to import
+
+    values = {
+        name: (("effect", "state"), np.array([row[name] for row in rows], float), {"units": unit, "long_name": meaning})
+        for name, (unit, meaning) in QUANTITIES.items()
+    }
+    words = {name: ("effect", [row[name] for row in rows]) for name in ("switch", "assumed", "reason")}
+    ratio = ("effect", [row["time"] for row in rows], {"long_name": "time of a state over that without the effect"})
+    coords = {"effect": [row["effect"] for row in rows], "state": ["without", "with"]}
+    return xr.Dataset(values | words | {"time": ratio}, coords, about)

@@ -1,0 +1,75 @@
+"""The size of each effect: what two calls of `solve` say, as a table, a chart and a command."""
+
+import json
+from pathlib import Path
+
+import numpy as np
+import pytest
+from numpy.testing import assert_allclose
+from typer.testing import CliRunner
+
+import mckibben as mk
+from mckibben.app.cli import app
+
+pytestmark = pytest.mark.experiments
+
+HELD = {"length": "115 mm", "pressure": "1 bar"}
+
+
+@pytest.fixture(scope="module")
+def found() -> mk.Effects:
+    return mk.effects(mk.presets.paper(), **HELD)
+
+
+def test_an_effect_is_with_it_against_without(found: mk.Effects) -> None:
+    base = mk.solve(mk.presets.paper(), **HELD)  # type: ignore[arg-type]
+    stretched = mk.solve(mk.presets.paper().replace("braid.fibre.stretch", True), **HELD)  # type: ignore[arg-type]
+    row = found.table.loc["stretch of the fibres"]
+    assert_allclose(row["force [%]"], 100.0 * (stretched.force / base.force - 1.0), rtol=1e-12)
+    assert row["switch"] == "braid.fibre.stretch = true"
+    free = mk.solve(mk.presets.paper().replace("ends", "free"), **HELD)  # type: ignore[arg-type]
+    assert_allclose(found.table.loc["ends that hold the radius", "force [%]"], 100.0 * (base.force / free.force - 1.0))
+
+
+def test_what_is_on_is_switched_off(found: mk.Effects) -> None:
+    other = mk.effects(mk.presets.paper().replace("braid.fibre.stretch", True), **HELD)
+    assert_allclose(
+        other.table.loc["stretch of the fibres", "force [%]"], found.table.loc["stretch of the fibres", "force [%]"]
+    )
+
+
+def test_the_largest_comes_first_and_what_has_no_numbers_last() -> None:
+    bare = mk.effects(mk.presets.reference().replace("chamber", None), **HELD)
+    table = bare.table
+    known = table["reason"] == ""
+    assert not known.iloc[-1]
+    assert known.sum() == 3
+    shares = np.abs(table.loc[known, "force [%]"])
+    assert (np.diff(shares) <= 0.0).all()
+    assert "give EA" in table.loc["stretch of the fibres", "reason"]
+    assert "bare braid has no chamber" in table.loc["thickness of the wall", "reason"]
+
+
+def test_chart(found: mk.Effects) -> None:
+    figure = mk.plot(found)
+    axes = figure.axes[0]
+    assert axes.get_yticklabels()[0].get_text() == "ends that hold the radius"
+    assert axes.get_xlabel() == "Change by the effect (%)"
+
+
+def test_command(tmp_path: Path) -> None:
+    case = tmp_path / "case.toml"
+    case.write_text('[muscle]\npreset = "paper"\n')
+    at = ["effects", str(case), "--length", "115 mm", "--pressure", "1 bar"]
+    told = CliRunner().invoke(app, [*at, "-o", str(tmp_path / "effects.csv")])
+    assert told.exit_code == 0, told.output
+    assert "stretch of the fibres" in told.output
+    assert "ASSUMED" in told.output
+    assert (tmp_path / "effects.csv").read_text().startswith("effect,force [%]")
+    parsed = json.loads(CliRunner().invoke(app, [*at, "--json"]).stdout)
+    assert {row["effect"] for row in parsed["effects"]} >= {"roll at the crossings", "fittings that give way"}
+
+
+def test_no_state_to_compare_with() -> None:
+    with pytest.raises(mk.SpecError, match="not stable there"):
+        mk.effects(mk.presets.paper(), length="130 mm", pressure="1 bar")
