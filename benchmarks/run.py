@@ -12,6 +12,7 @@ from typing import Any
 import batch
 import command
 import curve
+import effects
 import numpy as np
 import others
 import peer
@@ -29,6 +30,7 @@ def main() -> None:
     about = machine()
     exact = curve.reference()
     rows = curve.measure(exact) + batch.measure() + curve.measure_others(exact)
+    rows += effects.measure()
     rows += others.measure(exact) + peer.measure(exact) + command.measure()
     following = next(row for row in rows if row["name"].startswith("following alone, 24"))
     unit = following["processor_s"] / following["states"]

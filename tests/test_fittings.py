@@ -91,17 +91,6 @@ def test_short_muscles_lose_force() -> None:
     assert_allclose(rigid, rigid[0], rtol=1e-9)  # the cylinder, whose forces do not depend on the length
 
 
-def test_sweep_and_files(tmp_path: Any) -> None:
-    test = mk.Isobaric(length="100 mm to 115 mm", pressure="1 bar", points=4)
-    swept = mk.sweep(giving(), test, {"fittings.compliance": ["0.005 mm/N", "0.02 mm/N"]}, workers=1)
-    assert (swept["method"] == 0).all()
-    single = mk.run(giving(2e-5), test)
-    assert_allclose(swept["force"].values[1], single.force, rtol=1e-9)
-    mk.save(single, tmp_path / "curve.nc")
-    assert mk.load(tmp_path / "curve.nc") == single
-    assert "fittings" not in repr(mk.presets.paper())
-
-
 @pytest.mark.parametrize("compliance", ["-0.01 mm/N", 0.0, "3 mm"])
 def test_wrong_input(compliance: Any) -> None:
     with pytest.raises(mk.SpecError, match=r"fittings\.compliance"):

@@ -1,6 +1,5 @@
 """Fibres that roll where they cross: against finite elements of the rods, and against fibres that also stretch."""
 
-import jax
 import numpy as np
 import pytest
 from numpy.testing import assert_allclose
@@ -74,27 +73,6 @@ def test_work_is_stored() -> None:
     stored = curve.data["energy"].values[-1] - curve.data["energy"].values[0]
     assert_allclose(curve.data["work"].values[-1], stored, rtol=1e-6)
     assert curve.data["conserved_variation"].max() < 1e-6
-
-
-def test_derivatives() -> None:
-    test = mk.Isometric(length="115 mm", pressure="1 bar")
-
-    def force(muscle: mk.Muscle) -> jax.Array:
-        return mk.response(muscle, test, tolerance=1e-9)["force"][0]
-
-    muscle = pinned_crossings()
-    by = float(jax.grad(force)(muscle).braid.fibre.diameter)
-    up, down = (force(muscle.replace("braid.fibre.diameter", 0.25e-3 * (1.0 + step))) for step in (1e-4, -1e-4))
-    assert by == pytest.approx(float(up - down) / (2e-4 * 0.25e-3), rel=1e-6, abs=0.0)
-
-
-def test_a_sweep_is_its_single_runs() -> None:
-    test = mk.Isobaric(length="110 mm to 115 mm", pressure="1 bar", points=3)
-    swept = mk.sweep(pinned_crossings(), test, {"braid.fibre.diameter": ["0.25 mm", "0.4 mm"]}, workers=1)
-    assert (swept["method"] == 0).all()
-    single = mk.run(pinned_crossings().replace("braid.fibre.diameter", "0.4 mm"), test)
-    assert_allclose(swept["force"].values[1], single.force, rtol=1e-9)
-    assert_allclose(swept["peak_fibre_tension"].values[1], single.data["fibre_tension"].max("v"), rtol=1e-9)
 
 
 def test_files_say_the_joint_where_it_is_no_hinge() -> None:

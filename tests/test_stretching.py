@@ -2,7 +2,6 @@
 
 from typing import Any
 
-import jax
 import numpy as np
 import pytest
 from numpy.testing import assert_allclose
@@ -128,26 +127,6 @@ def test_a_slack_fibre_carries_no_compression() -> None:
     assert float(slack.min()) == 0.0
 
 
-def test_derivatives_by_the_axial_stiffness() -> None:
-    muscle, test = stretching(), mk.Isometric(length="115 mm", pressure="1 bar")
-    by = jax.grad(lambda m: mk.response(m, test, tolerance=1e-9)["force"][0])(muscle).braid.fibre.axial_stiffness
-
-    def force(factor: float) -> float:
-        return float(mk.response(stretching(factor), test, tolerance=1e-9)["force"][0])
-
-    difference = (force(1.0 + 1e-4) - force(1.0 - 1e-4)) / (2e-4 * PET)
-    assert float(by) == pytest.approx(difference, rel=1e-7, abs=0.0)
-
-
-def test_a_sweep_is_its_single_runs() -> None:
-    test = mk.Isobaric(length="125 mm to 132 mm", pressure="1 bar", points=3)
-    swept = mk.sweep(stretching(), test, {"braid.fibre.axial_stiffness": ["100 N", "147 N", "300 N"]}, workers=1)
-    assert (swept["status"] == 0).all()
-    assert (swept["method"] == 0).all()
-    single = mk.run(stretching(300.0 / PET), test)
-    assert_allclose(swept["force"].values[2], single.force, rtol=1e-9)
-
-
 def test_antisymmetric_stability_is_that_of_the_papers_model() -> None:
     """The shortest stable length, where one end bulges, tends to that of fibres that do not stretch."""
     found = [mk.limits(muscle, pressure="1 bar").shortest for muscle in (mk.presets.paper(), stretching(1e4))]
@@ -176,14 +155,3 @@ def test_stiffnesses_alone_tell_no_axial_one() -> None:
 def test_the_papers_mesh_refuses() -> None:
     with pytest.raises(mk.SpecError, match="neither stretch nor roll"):
         mk.run(stretching(), mk.Isometric(length="115 mm", pressure="1 bar"), discretisation="paper")
-
-
-def test_files(tmp_path: Any) -> None:
-    curve = mk.run(stretching(braid__joint="pin"), mk.Isometric(length="115 mm", pressure="1 bar"))
-    mk.save(curve, tmp_path / "curve.nc")
-    assert mk.load(tmp_path / "curve.nc") == curve
-    plain = mk.run(mk.presets.paper(), mk.Isometric(length="115 mm", pressure="1 bar"))
-    assert not {"fibre_stretch", "energy_stretch", "roll"} & set(plain.data)
-    assert "stretch" not in plain.attributes["muscle"]
-    mk.save(curve, tmp_path / "curve.csv")
-    assert "energy_stretch [J]" in (tmp_path / "curve.csv").read_text().splitlines()[0]
