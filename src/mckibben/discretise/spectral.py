@@ -61,9 +61,14 @@ class Line:
         return self.modes != "all"
 
     @property
-    def series(self) -> tuple[str, ...]:
-        """Fields with a series of `size` modes each, in the order of the unknowns."""
-        return ("psi", *(("excess",) if self.stretch else ()), *(("roll",) if self.roll else ()))
+    def series(self) -> dict[str, slice]:
+        """The unknowns of each field with a series: the excess is small and takes half the modes."""
+        found, first = {}, 0
+        for name, there in (("psi", True), ("excess", self.stretch), ("roll", self.roll)):
+            if there:
+                last = first + ((self.size + 1) // 2 if name == "excess" else self.size)
+                found[name], first = slice(first, last), last
+        return found
 
     @property
     def turns(self) -> int:
@@ -78,7 +83,7 @@ class Line:
     @property
     def unknowns(self) -> int:
         """Unknowns of the equilibrium."""
-        return self.size * len(self.series) + self.turns
+        return max(part.stop for part in self.series.values()) + self.turns
 
     @property
     def closes(self) -> bool:
@@ -129,23 +134,20 @@ class Line:
         Waves of the wall make a series that falls slowly and unevenly, whose last two may be small by chance: the error
         was then three squares of its last eighth x, which counts as the tail whose power 1.5 that is.
         """
-        f, series = functions(u), len(self.series)
-        size = abs(u[..., : self.size * series])
-        top = f.maximum(size.max(-1), 1e-12)
-        blocks = [size[..., k * self.size : (k + 1) * self.size] for k in range(series)]
+        f, parts = functions(u), [abs(u[..., part]) for part in self.series.values()]
+        top = f.maximum(reduce(f.maximum, [part.max(-1) for part in parts]), 1e-12)
         two, eighth = (
-            reduce(f.maximum, [block[..., -count:].max(-1) for block in blocks]) / top
-            for count in (2, max(2, self.size // 8))
+            reduce(f.maximum, [part[..., -max(2, part.shape[-1] // share) :].max(-1) for part in parts]) / top
+            for share in (self.size, 8)
         )
         return f.maximum(two, (3.0 * eighth**2) ** (2.0 / 3.0))
 
     def embedded(self, other: Any, u: Floats) -> Floats:
         """Unknowns u (m) of another line, larger or smaller or half of it, as unknowns of this one."""
         found = np.zeros(self.unknowns)
-        for k, name in enumerate(self.series):
+        for name, part in self.series.items():
             if name in other.series:
-                at = other.series.index(name) * other.size
-                self._embed(found[k * self.size : (k + 1) * self.size], u[at : at + other.size], other.modes)
+                self._embed(found[part], u[other.series[name]], other.modes)
         shared = min(self.turns, other.turns)
         if shared:
             found[len(found) - self.turns :][:shared] = u[len(u) - other.turns :][:shared]
@@ -190,9 +192,9 @@ def _at(line: Line, x: Floats) -> tuple[tuple[Floats, ...], tuple[Floats, ...]]:
 
     ends = [wide(np.ones((len(x), 1)), line.unknowns - line.turns + k) for k in range(line.turns)]
     tables = []
-    for k, name in enumerate(line.series):
-        series = _modes(line.modes, line.size, clamped=line.ends == "clamped" and name != "excess")
-        value, slope = (wide(legendre.legval(x, part).T, k * line.size) for part in (series, legendre.legder(series)))
+    for name, part in line.series.items():
+        series = _modes(line.modes, part.stop - part.start, clamped=line.ends == "clamped" and name != "excess")
+        value, slope = (wide(legendre.legval(x, some).T, part.start) for some in (series, legendre.legder(series)))
         tables += [value, ends[0]] if name == "excess" else [value, slope]
     nothing = wide(np.zeros((len(x), 0)), 0)
     if line.give:
