@@ -6,7 +6,7 @@ from typing import Any
 
 _PUBLIC = {
     "mckibben.spec": (
-        "Braid", "Chamber", "CustomLaw", "Ends", "Fibre", "Gent", "Joint", "MooneyRivlin", "Muscle", "NeoHookean",
+        "Braid", "Chamber", "CustomLaw", "Ends", "Fibre", "Friction", "Gent", "Joint", "MooneyRivlin", "Muscle", "NeoHookean",
         "Ogden", "Yeoh", "BlockedForce", "FreeContraction", "Isobaric", "Isometric", "Isotonic", "Protocol", "Step",
         "SpecError",
     ),

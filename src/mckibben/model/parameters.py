@@ -16,7 +16,7 @@ from mckibben.units import is_traced
 jax.config.update("jax_enable_x64", True)  # before anything is computed: every module of mechanics imports this one
 pytrees.register()
 
-__all__ = ["Number", "Parameters", "functions", "numbers", "parameters", "static_braid"]
+__all__ = ["Number", "Parameters", "Rubbing", "functions", "numbers", "parameters", "static_braid"]
 
 Number = Any
 """A float, a NumPy or JAX scalar, or a tracer."""
@@ -25,6 +25,15 @@ Number = Any
 def functions(*values: Number) -> Any:
     """NumPy for plain numbers and arrays, where nothing is to be compiled; `jax.numpy` where JAX is in a value."""
     return jnp if any(is_traced(value) for value in values) else np
+
+
+class Rubbing(NamedTuple):
+    """Numbers of the friction at the crossings, in SI units."""
+
+    arm: Number  #: friction coefficient times its arm, mu a [m]
+    moment: Number  #: part of the moment that does not depend on tension, m0 [N m]
+    stiffness: Number  #: k of a crossing that sticks [N m/rad]
+    diameter: Number  #: d of a fibre [m]; 0 where mu a is 0 and it does not matter
 
 
 class Parameters(NamedTuple):
@@ -42,6 +51,7 @@ class Parameters(NamedTuple):
     law: Any  #: law of the chamber: its kind is static, its constants are leaves; None for the bare braid
     EA: Any = None  #: axial stiffness of a fibre [N]; None where the fibres do not stretch
     slack: Any = None  #: 1 if a fibre carries no compression, 0 if it does
+    friction: Any = None  #: `Rubbing` where crossings rub, None where they turn freely
 
 
 def parameters(muscle: Muscle) -> Parameters:
@@ -66,7 +76,18 @@ def numbers(muscle: Muscle) -> Parameters:
         None if chamber is None else chamber.law,
         fibre.EA,
         (1.0 if fibre.slack else 0.0) if fibre.stretch else None,
+        _rubbing(muscle),
     )  # fmt: skip
+
+
+def _rubbing(muscle: Muscle) -> Rubbing | None:
+    friction, diameter = muscle.friction, muscle.braid.fibre.diameter
+    if friction is None:
+        return None
+    arm = 0.0 if friction.arm is None else friction.arm
+    return Rubbing(
+        friction.coefficient * arm, friction.constant, friction.stiffness, 0.0 if diameter is None else diameter
+    )
 
 
 def static_braid(p: Parameters) -> Number:

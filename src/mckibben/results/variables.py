@@ -15,7 +15,9 @@ STEP: dict[str, tuple[str, str]] = {
     "energy_twist": ("J", "fibre energy, twist"),
     "energy_chamber": ("J", "energy of the chamber"),
     "energy_stretch": ("J", "fibre energy, stretch"),
+    "energy_crossings": ("J", "energy that crossings store elastically"),
     "energy": ("J", "stored energy"),
+    "dissipated": ("J", "energy lost by friction at the crossings since the muscle was made"),
     "work": ("J", "work done on the muscle since the first state"),
     "verdict": ("", "verdict"),
     "reason": ("", "reason for the verdict"),
@@ -53,6 +55,7 @@ FIELDS: dict[str, tuple[str, str]] = {
     "fibre_stretch": ("1", "stretch of the fibres"),
     "density_stretch": ("J/m", "fibre energy per unit v, stretch"),
     "roll": ("rad", "angle by which a fibre's section has turned about the fibre"),
+    "crossing_moment": ("N m", "moment of one crossing, positive against lengthening"),
     "share_mesh": ("1", "share of the axial load F + pi r^2 P carried by the mesh"),
     "share_chamber": ("1", "share of the axial load F + pi r^2 P carried by the chamber"),
 }
@@ -82,6 +85,9 @@ OPTIONAL: dict[str, Callable[[Muscle], bool]] = {
     "fibre_stretch": lambda muscle: muscle.braid.fibre.stretch,
     "density_stretch": lambda muscle: muscle.braid.fibre.stretch,
     "roll": lambda muscle: muscle.braid.joint == Joint.PIN,
+    "energy_crossings": lambda muscle: muscle.friction is not None,
+    "dissipated": lambda muscle: muscle.friction is not None,
+    "crossing_moment": lambda muscle: muscle.friction is not None,
 }
 """Variables that only some muscles have."""
 

@@ -3,6 +3,7 @@
 from mckibben.spec.declared import describe, numbers, walk
 from mckibben.spec.errors import SpecError
 from mckibben.spec.fields import spec_classes
+from mckibben.spec.friction import Friction
 from mckibben.spec.laws import LAWS, CustomLaw, Gent, Law, MooneyRivlin, NeoHookean, Ogden, Yeoh
 from mckibben.spec.loading import (
     TESTS,
@@ -32,6 +33,7 @@ __all__ = [
     "Ends",
     "Fibre",
     "FreeContraction",
+    "Friction",
     "Gas",
     "Gent",
     "Isobaric",

@@ -201,9 +201,9 @@ def _read_part(value: Any, field: str, declared: Declared) -> Any:
     raise SpecError(field, value, f"must be a {names}", advice)
 
 
-def part(*kinds: type, meaning: str, default: Any = attrs.NOTHING) -> Any:
+def part(*kinds: type, meaning: str, default: Any = attrs.NOTHING, quiet: bool = False) -> Any:
     """A field that holds another spec object, of one of `kinds`."""
-    return declare(Declared(kind="part", read=_read_part, meaning=meaning, parts=kinds, default=default))
+    return declare(Declared(kind="part", read=_read_part, meaning=meaning, parts=kinds, default=default, quiet=quiet))
 
 
 @dataclass_transform(

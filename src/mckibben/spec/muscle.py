@@ -13,6 +13,7 @@ from mckibben.spec.change import changed_muscle
 from mckibben.spec.declared import Reads, walk
 from mckibben.spec.errors import SpecError, nearest
 from mckibben.spec.fields import choice, count, part, quantity, spec, switch, words
+from mckibben.spec.friction import Friction, check_friction
 from mckibben.spec.laws import LAWS, Law
 from mckibben.spec.limits import BENDING, check_angle, check_muscle
 from mckibben.units import Number, is_traced, show
@@ -329,6 +330,7 @@ class Muscle:
         braid: the tube of fibres, a `Braid`.
         chamber: the elastomer tube, a `Chamber`, or None for a bare braid.
         ends: what the fittings hold, one of `Ends`: "clamped" (default), "pinned" or "free".
+        friction: `Friction` where fibres cross, or None for the paper's, which turn freely.
         name: a name for people, shown in tables and files.
         assumed: names of the fields ("braid.fibres") whose values are assumptions; tables, pictures and files mark
             them.
@@ -347,6 +349,7 @@ class Muscle:
     braid: Braid = part(Braid, meaning="the tube of fibres")
     chamber: Chamber | None = part(Chamber, meaning="the elastomer tube, none for a bare braid", default=None)
     ends: Reads[Ends] = choice(Ends, meaning="what the fittings hold", default=Ends.CLAMPED)
+    friction: Friction | None = part(Friction, meaning="friction where fibres cross", default=None, quiet=True)
     name: str | None = words(meaning="a name for people", default=None)
     assumed: tuple[str, ...] = words(meaning="names of fields whose values are assumptions", many=True, default=())
 
@@ -355,6 +358,7 @@ class Muscle:
         for field in self.assumed:
             if field not in known:
                 raise SpecError("muscle.assumed", field, "is no field of this muscle", nearest(field, known))
+        check_friction(self.friction, self.braid.fibre.diameter)
         check_muscle(self)
 
     def __remark__(self) -> str:
