@@ -15,7 +15,7 @@ from mckibben.compiled.kernel import kernel
 from mckibben.discretise.fields import Placed, place, points_at
 from mckibben.measure.read import costates, nodes, states_at
 from mckibben.model.energy import works
-from mckibben.model.friction import Crossing, as_made, crossing_moment, crossings, moved, slip_moment, turn
+from mckibben.model.friction import Crossing, as_made, crossings, moved, slip_moment, turn
 from mckibben.model.parameters import Number, Parameters
 from mckibben.model.point import Point
 from mckibben.model.tension import tension
@@ -61,8 +61,8 @@ class _Round(NamedTuple):
 
 def fresh(basis: Basis, p: Parameters) -> tuple[Crossing, Crossing]:
     """Memories as made, of the quadrature points and the output points."""
-    made = as_made(p)
-    inner, outer = (jax.tree.map(lambda one: jnp.full(n, one), made) for n in (basis.points, nodes(basis)))
+    made, counts = as_made(p), (basis.points, nodes(basis))
+    inner, outer = (Crossing(*(jnp.full(count, one) for one in made)) for count in counts)
     return inner, outer
 
 
@@ -84,7 +84,6 @@ def rub(
     """
     basis, own = static
     on = place(basis, p, b)
-    before = turned(basis, on, state.u)
 
     def newton(state: Unknowns) -> tuple[Unknowns, Array, Array]:
         s = system(basis, on, state)
@@ -124,32 +123,31 @@ def rub(
     none = jnp.zeros((), int)
     start = _Round(state, kept, jnp.asarray(jnp.inf), none, none, jnp.array(True))
     found = jax.lax.while_loop(more, again, start)
-    return _after(basis, on, found, before)
+    return _after(basis, on, state, found)
 
 
-def _after(basis: Basis, on: Placed, found: _Round, before: Array) -> Stepped:
-    """What a step leaves behind."""
+def _after(basis: Basis, on: Placed, begun: Unknowns, found: _Round) -> Stepped:
+    """What a step from a state leaves behind."""
     p, state = on.p, found.state
     inner, outer = states_at(basis, on, state.u), points_at(basis, on, state.u, basis.sampling(nodes(basis)))
     next_inner, next_outer = (
         jax.vmap(lambda at, memory: moved(at, p, memory))(at, memory)
         for at, memory in ((inner, state.memory), (outer, found.outer))
     )
+
+    def turned(at: Point) -> Array:
+        return jax.vmap(lambda at: turn(at, p))(at)
+
     rates = jax.vmap(lambda at: works(at, p))(inner)
-    tau = jax.vmap(lambda at, memory: crossing_moment(at, p, memory))(inner, state.memory)
-    slipped = tau * (next_inner.alpha - state.memory.alpha)
+    mean = 0.5 * (begun.memory.moment + state.memory.moment)  # of second order in the step, and never negative
+    slipped = mean * jnp.abs(next_inner.alpha - state.memory.alpha)
     weights = jnp.asarray(basis.operators().weights) * on.jacobian
     good = found.good & (found.change <= SETTLED) & jnp.isfinite(state.u).all()
     return Stepped(
         state, found.outer, next_inner, next_outer, jnp.stack([weights @ one for one in rates[:2]]),
         crossings(p) * (weights @ slipped),
-        jnp.abs(turned(basis, on, state.u) - before).max(), found.iterations, good,
+        jnp.abs(turned(inner) - turned(states_at(basis, on, begun.u))).max(), found.iterations, good,
     )  # fmt: skip
-
-
-def turned(basis: Basis, on: Placed, u: Array) -> Float[Array, " q"]:
-    """How far the crossings at the quadrature points have turned [rad]."""
-    return jax.vmap(lambda at: turn(at, on.p))(states_at(basis, on, u))
 
 
 def moments(basis: Basis, on: Placed, state: Unknowns, kept: Crossing) -> tuple[Array, Array]:
@@ -164,7 +162,6 @@ def moments(basis: Basis, on: Placed, state: Unknowns, kept: Crossing) -> tuple[
         return slip_moment(at, tension(at, c, F, P, p, memory), p)
 
     found, shown = (
-        jax.vmap(moment)(at, c, memory)
-        for at, c, memory in ((inner, along[0], state.memory), (outer, along[1], kept))
+        jax.vmap(moment)(at, c, memory) for at, c, memory in ((inner, along[0], state.memory), (outer, along[1], kept))
     )
     return found, shown

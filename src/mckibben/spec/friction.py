@@ -27,9 +27,9 @@ class Friction:
         coefficient: friction coefficient mu between two fibres.
         arm: effective arm a of the friction about the crossing [m]; a fraction of the width over which fibres touch.
         constant: the part m0 of the moment that does not depend on tension [N m].
-        stiffness: moment per angle k of a crossing that sticks [N m, per rad]. The default of 10 N mm lets a crossing
-            with 0.02 N mm turn by 0.1 deg before it slips: little beside the tens of degrees of a stroke, so that forces
-            do not depend on it, and soft enough to be solved in few steps.
+        stiffness: moment per angle k of a crossing that sticks [N m, per rad]. With the default, 10 N mm, a crossing
+            turns by 0.1 deg before it slips at 0.02 N mm: little beside the tens of degrees of a stroke, on which
+            forces hardly depend, and soft enough to be solved in few steps.
 
     Raises:
         SpecError: for a value out of range, or a coefficient without its arm. A muscle with a coefficient also needs
