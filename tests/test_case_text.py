@@ -51,6 +51,9 @@ laws = st.one_of(
     call(spec.Yeoh, c1=moduli, c2=numbers, c3=numbers),
     call(spec.Ogden, mu=st.tuples(moduli, moduli), alpha=st.tuples(st.floats(0.01, 100.0), st.floats(0.01, 100.0))),
     call(spec.Gent, mu=moduli, Jm=st.floats(1e-3, 1e6)),
+    call(spec.ArrudaBoyce, mu=moduli, lambda_m=st.floats(1.001, 1e3)),
+    call(spec.Rubber, E=st.floats(1e2, 1e6)),
+    call(spec.Rubber, shore=st.floats(20.0, 80.0)),
 )
 stiffnesses = st.floats(1e-12, 1e3)
 fibres = st.one_of(

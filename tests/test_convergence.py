@@ -46,6 +46,21 @@ def test_spectral_convergence(length: float, b: float) -> None:
     assert (error[1::2] < 0.05 * np.array([estimate(found) for found in states[1::2]])).all()
 
 
+@pytest.mark.parametrize(("length", "exact"), [(0.2277, -8.555708500), (0.2280, -8.569649803)])
+def test_the_estimate_of_a_wavy_wall(length: float, exact: float) -> None:
+    """A long slack braid, pushed: the last two coefficients are 50 times smaller than those before them, by chance.
+
+    Forces on 256 unknowns [N]; the error is of 1e-6.
+    """
+    fibre = mk.Fibre(diameter="0.238 mm", E="2.63 GPa", nu=0.4)
+    braid = mk.Braid(radius="20.6 mm", length="229.5 mm", angle="66.9 deg", fibres=52, fibre=fibre)
+    wall = mk.Chamber(thickness="0.386 mm", law=mk.MooneyRivlin(c1="0.952 MPa", c2="0.261 MPa"))
+    problem = Bench.of(mk.Muscle(braid=braid, chamber=wall)).problem(192, 2.87)
+    found = find(problem, Held.of(length=length, pressure=0.0))
+    error = abs(found.force / exact - 1.0)
+    assert 1e-6 < error < estimate(found) < 5e-6
+
+
 def test_cubic_splines_converge_with_the_fourth_power_of_their_length() -> None:
     """Where they resolve the end layer: an energy of second derivatives, so twice (4 - 2)."""
     sizes, exact = np.array([13, 23, 43]), state(STIFF, 0.070, 24, 1.0).force

@@ -76,6 +76,17 @@ def test_gradients_and_tangents(case: str) -> None:
 
 
 @EVERY
+def test_a_look_sees_what_the_search_sees(case: str) -> None:
+    """Differentiated as they stand, or by the assembler."""
+    problem = problem_of(*CASES[case])
+    u = wave(problem, 0)
+    look, search = problem.balance(u), problem.evaluate(u)
+    for name in look._fields:
+        found, expected = (np.asarray(getattr(one, name)) for one in (look, search))
+        np.testing.assert_allclose(found, expected, rtol=0.0, atol=2e-14 * np.abs(expected).max(), err_msg=name)
+
+
+@EVERY
 def test_totals(case: str) -> None:
     """Energy, length, volume and closure again, from the profile at many output points."""
     muscle, basis = CASES[case]

@@ -22,6 +22,7 @@ from mckibben.compiled.executable import Executable, compiled, loaded
 from mckibben.compiled.folder import SUFFIX, private
 from mckibben.compiled.kernel import Kernel, keeping, kernel
 from mckibben.compiled.options import OPTIONS
+from mckibben.compiled.rows import filled
 from mckibben.solver.bench import Bench
 from mckibben.solver.find import find
 from mckibben.solver.held import Held
@@ -64,6 +65,8 @@ def test_a_second_process_compiles_nothing(tmp_path: Path) -> None:
     assert set(first["verdict"]) == set(other["verdict"]) == {"stable"}
     files = sorted(tmp_path.iterdir(), key=lambda file: file.stat().st_size)
     assert {file.suffix for file in files} == {SUFFIX}  # nothing half-written
+    names = {file.name.partition("-")[0] for file in files}
+    assert names == {"crowdings", "setting", "follow", "balance", "read_many"}  # nothing of the search, the dearest
     contents = [file.read_bytes() for file in files[:4]]
     short, changed, _, other = contents
     damaged = (short[:-1], changed[:999] + bytes([changed[999] ^ 1]) + changed[1000:], b"", other[::-1])
@@ -156,6 +159,25 @@ def test_static_arguments_by_position_and_name(tmp_path: Path) -> None:
         mixed.prepare(2, 3.0, 1)
         assert mixed(2, np.float64(2.0), 1)["sum"] == 6.0
         assert mixed._cache_size() == count
+
+
+def test_rows_are_filled_by_a_function_traced_once() -> None:
+    """Two rows at a time, as far as is asked."""
+    traced = []
+
+    @jax.jit
+    def squares(x: Any, count: Any) -> Any:
+        def at(k: Any) -> Any:
+            traced.append(k)
+            some = jax.lax.dynamic_slice_in_dim(x, 2 * k, 2)
+            return {"square": some**2, "positive": some > 0.0}
+
+        return filled(at, count, len(x))
+
+    found = squares(np.arange(8.0), np.array(3))
+    assert found["square"].tolist() == [0.0, 1.0, 4.0, 9.0, 16.0, 25.0, 0.0, 0.0]
+    assert found["positive"].tolist() == [False, *[True] * 5, False, False]
+    assert len(traced) == 1
 
 
 def test_ahead_and_at_once(tmp_path: Path) -> None:

@@ -53,6 +53,8 @@ def test_single_numbers(field: str, value: object) -> None:
         lambda: mk.Ogden(mu=[1e4], alpha=[1e200]),
         lambda: mk.Ogden(mu=[1e-5], alpha=[1e-3]),
         lambda: mk.Gent(mu="10 kPa", Jm=1e-200),
+        lambda: mk.ArrudaBoyce(mu="10 kPa", lambda_m=1e200),
+        lambda: mk.Rubber(E=1.0),
         lambda: mk.MooneyRivlin(c1=1e-200),
         lambda: mk.Isometric(length=1e-300, pressure=0.0),
         lambda: mk.Isometric(length=0.1, pressure=1e300),

@@ -22,6 +22,9 @@ LAWS = (
     mk.Yeoh(c1=1e4, c2=10.0, c3=1.0),
     mk.Ogden(mu=[1e4, 1e3], alpha=[2.0, -2.0]),
     mk.Gent(mu=1e4, Jm=20.0),
+    mk.ArrudaBoyce(mu=1e4, lambda_m=4.0),
+    mk.Rubber(E=1e6),
+    mk.Rubber(shore=30.0),
     mk.CustomLaw(function=max, constants={"b": 0.1, "mu": 1e4}),
 )
 OBJECTS = (

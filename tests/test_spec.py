@@ -87,6 +87,8 @@ OWNERS = {
     "NeoHookean": spec.NeoHookean,
     "Yeoh": spec.Yeoh,
     "Gent": lambda **given: spec.Gent(**({"mu": 1.0, "Jm": 1.0} | given)),
+    "ArrudaBoyce": lambda **given: spec.ArrudaBoyce(**({"mu": 1.0, "lambda_m": 5.0} | given)),
+    "Rubber": spec.Rubber,
     "Isometric": lambda **given: spec.Isometric(**({"length": 0.1, "pressure": 0.0} | given)),
     "Isobaric": lambda **given: spec.Isobaric(**({"length": 0.1, "pressure": 0.0} | given)),
     "Step": lambda **given: spec.Step(
@@ -198,6 +200,8 @@ def test_stiffnesses_of_a_round_fibre():
         (spec.Yeoh(c1="10 kPa", c2=-5.0), 20e3),
         (spec.Ogden(mu=["20 kPa", -1e3], alpha=(2, -2)), 21e3),
         (spec.Gent(mu="20 kPa", Jm=30), 20e3),
+        (spec.ArrudaBoyce(mu="20 kPa", lambda_m=3), 20e3 * (1 + 1 / 15 + 11 / 1575 + 19 / 23625 + 173 / 1819125)),
+        (spec.Rubber(E="60 kPa"), 20e3),
     ],
 )
 def test_shear_modulus(law, modulus):
@@ -218,6 +222,7 @@ def test_shear_modulus(law, modulus):
         lambda: spec.Ogden(mu=[], alpha=[]),
         lambda: spec.Ogden(mu=1.0, alpha=2.0),
         lambda: spec.Gent(mu=1, Jm=0),
+        lambda: spec.ArrudaBoyce(mu=1, lambda_m=1),
         lambda: spec.CustomLaw(function=3),
         lambda: spec.CustomLaw(function=max, constants={"a": "1 kPa"}),
         lambda: spec.CustomLaw(function=max, constants=[1.0]),

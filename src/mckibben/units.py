@@ -24,7 +24,9 @@ Quantity: TypeAlias = Any
 Number: TypeAlias = Any
 """An SI float, or the JAX array or tracer that takes its place while JAX differentiates or compiles."""
 
-DISPLAY = {"m": "mm", "Pa": "bar", "rad": "deg", "m^3": "mL", "N m^2": "N mm^2", "N m": "N mm", "J": "mJ"}
+DISPLAY = {
+    "m": "mm", "Pa": "bar", "rad": "deg", "m^3": "mL", "N m^2": "N mm^2", "N m": "N mm", "J": "mJ", "m/N": "mm/N",
+}  # fmt: skip
 """The unit each SI unit is shown in, where it is not itself."""
 
 _USUAL = {
@@ -172,7 +174,7 @@ def _from_text(text: str, unit: str) -> float:
 
 def _example(unit: str) -> str:
     examples = {"m": '"12.5 mm"', "Pa": '"1 bar"', "rad": '"37 deg"', "N": '"20 N"', "m^3": '"40 mL"'}
-    examples |= {"N m^2": '"0.5 N mm^2"', "1": "0.4"}
+    examples |= {"N m^2": '"0.5 N mm^2"', "m/N": '"0.01 mm/N"', "1": "0.4"}
     return "write it like " + examples.get(unit, f'"1 {unit}"')
 
 
@@ -186,7 +188,7 @@ def _si_of(unit: str) -> str:
     """The package's SI unit for the kind of `unit`."""
     if unit in _USUAL:
         return _USUAL[unit][0]
-    for candidate in ("m", "N", "Pa", "rad", "m^3", "N m^2", "J", "J/m", "1/m", "m^2", "N/m"):
+    for candidate in ("m", "N", "Pa", "rad", "m^3", "N m^2", "J", "J/m", "1/m", "m^2", "N/m", "m/N"):
         try:
             _factor(unit, candidate)
         except UnitError:

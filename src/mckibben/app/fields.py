@@ -43,7 +43,7 @@ def numbered(sources: Iterable[str]) -> tuple[list[str], list[str]]:
 
 
 def _first(law: Any) -> str:
-    return next(walk(law))[0]
+    return next(name for name, _, value in walk(law) if value is not None)
 
 
 def _origins(muscle: Muscle) -> dict[str, str]:

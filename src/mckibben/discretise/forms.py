@@ -1,4 +1,4 @@
-"""What the local variables of the spectral line mean, with and without the stretch and the roll of the fibres.
+"""What the local variables of the spectral line mean, with and without the effects that can be switched on.
 
 theta is integrated from theta' = rate(psi), Eq. (12). Where fibres stretch, that rate gains a field, the excess, and
 the logarithm q of their stretch is integrated from q' = excess tan(theta). As EA grows the excess tends to zero, so
@@ -6,6 +6,7 @@ that the shapes of stiff fibres lie in a plane of unknowns, not along a curved v
 """
 
 from functools import cache
+from itertools import chain
 
 import jax.numpy as jnp
 
@@ -17,24 +18,25 @@ from mckibben.model.point import Point
 
 __all__ = ["line_form"]
 
-ORDERS = {"psi": 0, "kappa": 1, "excess": 1, "turn": 0, "roll": 0, "roll_rate": 1}
-"""How often each field is differentiated by v; the turn of theta at a fitting is the same all along the length."""
+ORDERS = {"psi": 0, "kappa": 1, "excess": 1, "turn": 0, "roll": 0, "roll_rate": 1, "give": 0}
+"""How often each field is differentiated by v; what happens at a fitting, turn or give, is the same all along v."""
 ANGLES = {"theta", "psi", "turn", "roll"}
 """What enters by its sine and cosine alone."""
 
 
 @cache
-def line_form(stretch: bool, roll: bool, free: bool) -> Form:
-    """The form of a line whose fibres stretch and roll or not, and whose end radius is free or held."""
+def line_form(stretch: bool, roll: bool, give: bool, free: bool) -> Form:
+    """The form of a line with some of the effects, and with its end radius free or held."""
     integrated = ("theta", "log_stretch") if stretch else ("theta",)
-    fields = ("psi", "kappa", *(("excess", "turn") if stretch else ()), *(("roll", "roll_rate") if roll else ()))
+    effects = (("excess", "turn") if stretch else (), ("roll", "roll_rate") if roll else (), ("give",) if give else ())
+    fields = ("psi", "kappa", *chain(*effects))
     names = (*integrated, *fields)
 
     def point(x: Variables, p: Parameters) -> Point:
         at = dict(zip(names, x, strict=True))
         stretched = _stretch(at["log_stretch"], None if free else at["turn"], p) if stretch else None
-        excess, phi, phi_rate = (at.get(name) for name in ("excess", "roll", "roll_rate"))
-        return Point(at["theta"], at["psi"], at["kappa"], stretched, excess, phi, phi_rate)
+        effects = (at.get(name) for name in ("excess", "roll", "roll_rate", "give"))
+        return Point(at["theta"], at["psi"], at["kappa"], stretched, *effects)
 
     def turning(x: Variables, p: Parameters) -> Number:
         at = dict(zip(names, x, strict=True))

@@ -28,8 +28,8 @@ class Line:
     """A space of slopes psi: `size` modes, their symmetry about mid-length, and the ends they satisfy.
 
     The unknowns u are the coefficients of the modes: of psi, of the excess where the fibres stretch, and of their roll;
-    then what changes at the first end: the braid angle where the radius is free or the fibres stretch, and the
-    logarithm of their stretch where both is so.
+    then what changes at the ends: the braid angle where the radius is free or the fibres stretch, the logarithm of
+    their stretch where both is so, and the give of the fittings, which antisymmetric disturbances do not touch.
     """
 
     size: int
@@ -37,16 +37,18 @@ class Line:
     modes: Modes = "odd"
     stretch: bool = False  #: whether the fibres stretch
     roll: bool = False  #: whether they roll
+    give: bool = False  #: whether the fittings give way
 
     @classmethod
     def of(cls, muscle: Muscle, size: int) -> "Line":
         """The space of symmetric shapes of a muscle: what its ends hold, and what its fibres may do."""
-        return cls(size, str(muscle.ends), stretch=muscle.braid.fibre.stretch, roll=muscle.braid.joint == Joint.PIN)
+        roll, give = muscle.braid.joint == Joint.PIN, muscle.fittings is not None
+        return cls(size, str(muscle.ends), stretch=muscle.braid.fibre.stretch, roll=roll, give=give)
 
     @property
     def form(self) -> Form:
         """What the local variables mean."""
-        return line_form(self.stretch, self.roll, self.ends == "free")
+        return line_form(self.stretch, self.roll, self.give, self.ends == "free")
 
     @property
     def points(self) -> int:
@@ -65,8 +67,13 @@ class Line:
 
     @property
     def turns(self) -> int:
-        """Unknowns of the first end, after the series: theta, and the stretch."""
-        return (self.ends == "free") + self.stretch
+        """Unknowns of the ends, after the series: theta, the stretch, and the give of the fittings."""
+        return (self.ends == "free") + self.stretch + self.gives
+
+    @property
+    def gives(self) -> bool:
+        """Whether the give of the fittings is among the unknowns."""
+        return self.give and self.modes != "even"
 
     @property
     def unknowns(self) -> int:
@@ -117,11 +124,20 @@ class Line:
         return 1.0
 
     def tail(self, u: Array) -> Any:
-        """Largest of the last two coefficients over the largest (..., m): how well the series has converged."""
-        size = abs(u[..., : self.size * len(self.series)])
-        last = [size[..., k * self.size - 2 : k * self.size].max(-1) for k in range(1, len(self.series) + 1)]
-        f = functions(u)
-        return reduce(f.maximum, last) / f.maximum(size.max(-1), 1e-12)
+        """Largest of the last coefficients of a series over the largest of all (..., m): how well it has converged.
+
+        Waves of the wall make a series that falls slowly and unevenly, whose last two may be small by chance: the error
+        was then three squares of its last eighth x, which counts as the tail whose power 1.5 that is.
+        """
+        f, series = functions(u), len(self.series)
+        size = abs(u[..., : self.size * series])
+        top = f.maximum(size.max(-1), 1e-12)
+        blocks = [size[..., k * self.size : (k + 1) * self.size] for k in range(series)]
+        two, eighth = (
+            reduce(f.maximum, [block[..., -count:].max(-1) for block in blocks]) / top
+            for count in (2, max(2, self.size // 8))
+        )
+        return f.maximum(two, (3.0 * eighth**2) ** (2.0 / 3.0))
 
     def embedded(self, other: Any, u: Floats) -> Floats:
         """Unknowns u (m) of another line, larger or smaller or half of it, as unknowns of this one."""
@@ -178,7 +194,10 @@ def _at(line: Line, x: Floats) -> tuple[tuple[Floats, ...], tuple[Floats, ...]]:
         series = _modes(line.modes, line.size, clamped=line.ends == "clamped" and name != "excess")
         value, slope = (wide(legendre.legval(x, part).T, k * line.size) for part in (series, legendre.legder(series)))
         tables += [value, ends[0]] if name == "excess" else [value, slope]
-    lifts = (*ends, *[wide(np.zeros((len(x), 0)), 0)] * 2)
+    nothing = wide(np.zeros((len(x), 0)), 0)
+    if line.give:
+        tables.append(ends.pop() if line.gives else nothing)
+    lifts = (*ends, nothing, nothing)
     return tuple(tables), lifts[: len(line.form.integrals)]
 
 

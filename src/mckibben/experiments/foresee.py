@@ -17,7 +17,7 @@ def derived(muscle: Muscle) -> Iterator[tuple[str, str, str]]:
     """(quantity, value, meaning) of what follows from the fields without solving anything."""
     braid, fibre = muscle.braid, muscle.braid.fibre
     yield "braid", tendency(braid.angle), f"long muscles turn at {show(MAGIC, 'rad', 4)} from the parallels (Eq. 31)"
-    if not fibre.stretch:
+    if longest(muscle) < math.inf:
         meaning = "longest possible length: the fibres are straight, the force has no bound"
         yield "full extension", show(longest(muscle), "m"), meaning
     yield "fibre length", show(braid.length / math.sin(braid.angle), "m"), "from fitting to fitting, along one fibre"

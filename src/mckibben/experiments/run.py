@@ -100,10 +100,10 @@ def solved(
 
 
 def _prepare(basis: Basis, p: Parameters, steps: tuple[Step, ...]) -> None:
-    """Have what the test will call compiled in the background, where compiled functions are kept."""
+    """Have what the test will call compiled in the background, where compiled functions are kept; the longest first."""
     for count in dict.fromkeys(step.points for step in steps):
-        follow.prepare(basis, p, 0.0, count)
         surveying.prepare(basis, p, 0.0, count)
+        follow.prepare(basis, p, 0.0, count)
 
 
 def crowding_for(bench: Bench, steps: tuple[Step, ...]) -> float:

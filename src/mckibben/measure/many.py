@@ -9,6 +9,7 @@ from jaxtyping import Bool, Float, Int
 
 from mckibben.compiled.arrays import Array
 from mckibben.compiled.kernel import kernel
+from mckibben.compiled.rows import filled
 from mckibben.discretise.fields import Placed
 from mckibben.measure.read import read, stable
 from mckibben.solver.batch import moved, newton
@@ -45,15 +46,11 @@ def appraise(basis: Basis, on: Placed, state: Unknowns) -> Appraised:
 def appraised(basis: Basis, on: Placed, states: Unknowns, count: Int[Array, ""]) -> Appraised:
     """The first `count` states (n, batch, ...) of every muscle; leaves lead with (n, batch) and are zero beyond."""
 
-    def at(k: Any) -> Appraised:
+    def at(k: Array) -> Appraised:
         some = jax.tree.map(lambda rows: rows[k], states)
-        return jax.vmap(partial(appraise, basis))(on, some)
+        return jax.tree.map(lambda row: row[None], jax.vmap(partial(appraise, basis))(on, some))
 
-    n = len(states.u)
-    blank = jax.tree.map(lambda s: jnp.zeros((n, *s.shape), s.dtype), jax.eval_shape(at, 0))
-    return jax.lax.fori_loop(
-        0, count, lambda k, rows: jax.tree.map(lambda row, one: row.at[k].set(one), rows, at(k)), blank
-    )
+    return filled(at, count, len(states.u))
 
 
 class Polished(NamedTuple):

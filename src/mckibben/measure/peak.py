@@ -29,14 +29,13 @@ def peak(field: Float[Array, " q"], harmonics: Floats) -> Float[Array, ""]:
     room = grid[1]
     level = 1e-9 * jnp.abs(values).max()
 
-    def newton(t: Array) -> Array:
+    def newton(t: Array, c: Array) -> Array:
         """One step, held between the neighbours; none where the field is level or has no maximum."""
         bend = -(k**2 * jnp.cos(k * t)) @ c
         curved = bend < -level
         step = jnp.where(curved, -(k * jnp.sin(k * t)) @ c / jnp.where(curved, bend, 1.0), 0.0)
         return jnp.clip(t - step, start - room, start + room)
 
-    t = start
-    for _ in range(STEPS):
-        t = jax.lax.stop_gradient(newton(t))
-    return jnp.cos(k * newton(t)) @ c  # the last step carries the derivative of the place
+    still = jax.lax.stop_gradient(c)
+    t = jax.lax.fori_loop(0, STEPS, lambda _, t: newton(t, still), start)  # a loop compiles sooner than its steps
+    return jnp.cos(k * newton(t, c)) @ c  # the last step carries the derivative of the place

@@ -14,12 +14,13 @@ from jaxtyping import Bool, Float, Int
 
 from mckibben.compiled.arrays import Array
 from mckibben.compiled.kernel import kernel
+from mckibben.compiled.rows import filled
 from mckibben.discretise.fields import Placed, place, points_at, variables
 from mckibben.discretise.fields import known as with_sines
 from mckibben.measure.peak import peak
 from mckibben.model.angle import cos, radians, slope
 from mckibben.model.chamber import chamber_density, chamber_pull
-from mckibben.model.energy import lagrangian
+from mckibben.model.energy import fittings_density, lagrangian
 from mckibben.model.fibres import axial_density, fibre_densities
 from mckibben.model.friction import crossing_density, crossing_moment
 from mckibben.model.kinematics import fibre_strains, height_rate, radius, stretches, volume_rate
@@ -66,21 +67,25 @@ def read(basis: Basis, on: Placed, state: Unknowns, kept: Any = None) -> Reading
         return tuple(_densities(at, p, memory).values()), height_rate(at, p), volume_rate(at, p)
 
     densities, rate, swept = jax.vmap(local)(inner, memory)
-    names = ENERGIES if inner.stretch is None else (*ENERGIES, "stretch")
-    names = names if memory is None else (*names, "crossings")
+    first, of_first = jax.tree.map(lambda rows: rows[0], (inner, memory))
+    names = tuple(_densities(first, p, of_first))
     weights = jnp.asarray(operators.weights) * on.jacobian
     parts = [jnp.sum(weights * density) for density in densities]
     length, volume = jnp.sum(weights * rate), jnp.sum(weights * swept)
+    length = length if inner.give is None else length + jnp.sum(weights * inner.give)
     inner_costates, outer_costates = costates(basis, on, inner, (F, P, M), sampling, memory)
-    found = jax.vmap(lambda at, c, kept: _fields(at, c, F, P, p, kept))(outer, outer_costates, kept)
+    q = len(weights)
+    points, pulls, memories = jax.tree.map(
+        lambda *both: jnp.concatenate(both), (inner, inner_costates, memory), (outer, outer_costates, kept)
+    )  # fmt: skip
+    everywhere = jax.vmap(lambda at, c, kept: _fields(at, c, F, P, p, kept))(points, pulls, memories)
+    found = {name: values[q:] for name, values in everywhere.items()}
     found["z"] = sampling.integral @ (on.jacobian * rate)
-    ends = np.array([0] if basis.half else [0, -1])
-    checked = jax.tree.map(lambda one, other: jnp.concatenate([one, other[ends]]), inner, outer)
-    along = jax.tree.map(lambda one, other: jnp.concatenate([one, other[ends]]), inner_costates, outer_costates)
-    variation = _variation(on, checked, along, F, P, weights) if memory is None else jnp.asarray(jnp.nan)
-    inner_tension = jax.vmap(lambda at, c, memory: tension(at, c, F, P, p, memory))(inner, inner_costates, memory)
-    inner_radius = jax.vmap(lambda at: radius(at, p))(inner)
-    tallest = jax.vmap(lambda field: peak(field, basis.harmonics()))(jnp.stack([inner_tension, inner_radius]))
+    checked = np.append(np.arange(q), q if basis.half else [q, -1])  # the mesh and the fittings
+    at, along = jax.tree.map(lambda rows: rows[checked], (points, pulls))
+    variation = _variation(on, at, along, F, P, weights) if memory is None else jnp.asarray(jnp.nan)
+    extremes = jnp.stack([everywhere[name][:q] for name in ("fibre_tension", "r")])
+    tallest = jax.vmap(lambda field: peak(field, basis.harmonics()))(extremes)
     numbers = {
         "length": length, "contraction": 1.0 - length / p.H0, "force": F, "pressure": P, "volume": volume,
         **{f"energy_{name}": part for name, part in zip(names, parts, strict=True)}, "energy": sum(parts),
@@ -98,6 +103,7 @@ def _densities(at: Point, p: Parameters, memory: Any = None) -> dict[str, Number
     """The parts of the stored energy per unit v [J/m], by name."""
     parts = dict(zip(ENERGIES, (*fibre_densities(at, p), chamber_density(at, p)), strict=True))
     parts = parts if at.stretch is None else parts | {"stretch": axial_density(at, p)}
+    parts = parts if at.give is None else parts | {"fittings": fittings_density(at, p)}
     return parts if memory is None else parts | {"crossings": crossing_density(at, p, memory)}
 
 
@@ -228,16 +234,9 @@ def read_many(
         s = assemble(basis, on, local, len(state.loads))
         return read(basis, on, state, kept), stable(basis, on, local, s, volume), residual(s, state.loads)
 
-    def some(k: Any) -> Any:
+    def some(k: Array) -> Any:
         rows = jax.tree.map(lambda rows: jax.lax.dynamic_slice_in_dim(rows, k * size, size), (states, kept))
         return jax.vmap(one)(*rows)
 
-    blank = jax.tree.map(lambda s: jnp.zeros((n, *s.shape[1:]), s.dtype), jax.eval_shape(some, 0))
-
-    def put(k: Any, rows: Any) -> Any:
-        return jax.tree.map(
-            lambda row, new: jax.lax.dynamic_update_slice_in_dim(row, new, k * size, 0), rows, some(k)
-        )  # fmt: skip
-
-    found: tuple[Reading, Stable, Array] = jax.lax.fori_loop(0, (count + size - 1) // size, put, blank)
+    found: tuple[Reading, Stable, Array] = filled(some, (count + size - 1) // size, n)
     return found

@@ -22,7 +22,7 @@ from mckibben.spec import Muscle, Test
 
 NUMBERS = (
     "length", "contraction", "force", "pressure", "volume", *(f"energy_{name}" for name in ENERGIES), "energy_stretch",
-    "energy_crossings", "energy", "dissipated",
+    "energy_fittings", "energy_crossings", "energy", "dissipated",
     "residual", "error_estimate", "coefficient_tail", "conserved_variation",
 )  # fmt: skip
 

@@ -155,9 +155,10 @@ def error_bound(
     """The smaller of two bounds that hold on random muscles; of those `stretched` nearly to full extension only one.
 
     In validation/ the variation of the conserved quantity fell short of the true error by 2.5 at most. The tail of the
-    coefficients enters the energy squared; near an instability the force follows less well, hence the power 1.5. Near
-    full extension the force answers to the last digits of the length, of which the conserved quantity knows nothing:
-    there the tail counts, which fell short by 1.8 at most.
+    coefficients enters the energy squared; near an instability the force follows less well, hence the power 1.5 (and
+    `Line.tail` has more for series that end in small coefficients by chance). Near full extension the force answers to
+    the last digits of the length, of which the conserved quantity knows nothing: there the tail counts, which fell
+    short by 1.8 at most.
     """
     by_tail = coefficient_tail**1.5
     usual = np.minimum(3.0 * conserved_variation, by_tail)

@@ -13,7 +13,7 @@ import jax.numpy as jnp
 from mckibben.model.kinematics import stretches
 from mckibben.model.parameters import Number, Parameters
 from mckibben.model.point import Point
-from mckibben.spec.laws import CustomLaw, Gent, MooneyRivlin, NeoHookean, Ogden, Yeoh
+from mckibben.spec.laws import ArrudaBoyce, CustomLaw, Gent, MooneyRivlin, NeoHookean, Ogden, Yeoh
 
 __all__ = ["LAWS", "chamber_density", "chamber_pull", "energy_density"]
 
@@ -47,6 +47,21 @@ def gent(l1: Number, l2: Number, l3: Number, law: Gent) -> Number:
     return -0.5 * law.mu * law.Jm * jnp.log1p(-(l1**2 + l2**2 + l3**2 - 3.0) / law.Jm)
 
 
+EIGHT_CHAINS = (1 / 2, 1 / 20, 11 / 1050, 19 / 7000, 519 / 673750)
+"""Of the energy of eight chains in I1/lambda_m^2 (Arruda and Boyce 1993)."""
+
+
+def arruda_boyce(l1: Number, l2: Number, l3: Number, law: ArrudaBoyce) -> Number:
+    """mu times the sum of a_k (I1^k - 3^k)/lambda_m^(2k-2), k = 1 to 5; the differences without cancellation."""
+    first = l1**2 + l2**2 + l3**2
+    total, difference, power, shrink = 0.0 * l1, 0.0 * l1, 1.0, 1.0
+    for factor in EIGHT_CHAINS:
+        difference = first * difference + power * (first - 3.0)  # I1^k - 3^k from the one before
+        total = total + factor * shrink * difference
+        power, shrink = 3.0 * power, shrink / law.lambda_m**2
+    return law.mu * total
+
+
 def custom(l1: Number, l2: Number, l3: Number, law: CustomLaw) -> Number:
     """The user's own function of the stretches and its named constants."""
     return law.function(l1, l2, l3, dict(law.constants))
@@ -58,9 +73,10 @@ LAWS: dict[type, Callable[[Number, Number, Number, Any], Number]] = {
     Yeoh: yeoh,
     Ogden: ogden,
     Gent: gent,
+    ArrudaBoyce: arruda_boyce,
     CustomLaw: custom,
 }
-"""The energy of each kind of law."""
+"""The energy of each kind of law; `Rubber` is a `NeoHookean` by the time it is here."""
 
 
 def energy_density(l1: Number, l2: Number, l3: Number, law: Any) -> Number:

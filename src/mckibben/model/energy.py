@@ -18,7 +18,7 @@ from mckibben.model.kinematics import closure_rate, height_rate, volume_rate
 from mckibben.model.parameters import Number, Parameters
 from mckibben.model.point import Point
 
-__all__ = ["LOADS", "QUANTITIES", "lagrangian", "remember", "scales", "stored", "works"]
+__all__ = ["LOADS", "QUANTITIES", "fittings_density", "lagrangian", "remember", "scales", "stored", "works"]
 
 QUANTITIES = ("energy", "length", "volume", "closure")
 """What densities along the length integrate to: stored energy, length h, volume V, and what equal end radii null."""
@@ -35,7 +35,13 @@ def stored(at: Point, p: Parameters, memory: Any = None) -> Number:
     """
     energy = sum(fibre_densities(at, p)) + chamber_density(at, p)
     energy = energy if at.stretch is None else energy + axial_density(at, p)
+    energy = energy if at.give is None else energy + fittings_density(at, p)
     return energy if p.friction is None or memory is None else energy + incremental_density(at, p, memory)
+
+
+def fittings_density(at: Point, p: Parameters) -> Number:
+    """Energy of fittings that give way like a spring, (H0 give)^2/(2 C) in all, spread over the length [J/m]."""
+    return at.give**2 * p.H0 / (2.0 * p.compliance)
 
 
 def remember(at: Point, p: Parameters, memory: Any) -> Any:
@@ -45,7 +51,8 @@ def remember(at: Point, p: Parameters, memory: Any) -> Any:
 
 def works(at: Point, p: Parameters) -> tuple[Number, Number, Number]:
     """Densities per unit v of length, volume and closure, on whose change the `LOADS` do work."""
-    return height_rate(at, p), volume_rate(at, p), closure_rate(at, p)
+    height = height_rate(at, p) if at.give is None else height_rate(at, p) + at.give
+    return height, volume_rate(at, p), closure_rate(at, p)
 
 
 def lagrangian(at: Point, p: Parameters, F: Number, P: Number, M: Number = 0.0, memory: Any = None) -> Number:

@@ -14,16 +14,18 @@ LONG = 25.0
 
 
 def longest(muscle: spec.Muscle) -> float:
-    """Longest admissible length [m] of a muscle; infinite where its fibres stretch."""
+    """Longest admissible length [m] of a muscle; infinite where its fibres stretch or its fittings give way."""
     braid = muscle.braid
-    if braid.fibre.stretch:
+    if braid.fibre.stretch or muscle.fittings is not None:
         return math.inf
     return full_extension(float(braid.radius), float(braid.length), float(braid.angle), str(muscle.ends))
 
 
 def longest_of(p: Parameters, ends: str) -> float:
     """The same from a muscle's numbers."""
-    return math.inf if p.EA is not None else full_extension(float(p.R0), float(p.H0), float(p.theta0), ends)
+    if p.EA is not None or p.compliance is not None:
+        return math.inf
+    return full_extension(float(p.R0), float(p.H0), float(p.theta0), ends)
 
 
 @lru_cache(maxsize=256)

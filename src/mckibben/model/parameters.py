@@ -10,6 +10,7 @@ import jax.numpy as jnp
 import numpy as np
 
 from mckibben.model import pytrees
+from mckibben.spec.laws import NeoHookean, Rubber
 from mckibben.spec.muscle import Muscle
 from mckibben.units import is_traced
 
@@ -51,6 +52,7 @@ class Parameters(NamedTuple):
     law: Any  #: law of the chamber: its kind is static, its constants are leaves; None for the bare braid
     EA: Any = None  #: axial stiffness of a fibre [N]; None where the fibres do not stretch
     slack: Any = None  #: 1 if a fibre carries no compression, 0 if it does
+    compliance: Any = None  #: of both fittings together [m/N]; None where they are rigid
     friction: Any = None  #: `Rubbing` where crossings rub, None where they turn freely
 
 
@@ -73,9 +75,10 @@ def numbers(muscle: Muscle) -> Parameters:
         braid.radius, braid.length, braid.angle, braid.fibres, B1, B2, B3,
         1.0 if fibre.natural == "helical" else 0.0,
         np.pi * thickness * (thickness + 2.0 * braid.radius),
-        None if chamber is None else chamber.law,
+        None if chamber is None else _law(chamber.law),
         fibre.EA,
         (1.0 if fibre.slack else 0.0) if fibre.stretch else None,
+        None if muscle.fittings is None else muscle.fittings.compliance,
         _rubbing(muscle),
     )  # fmt: skip
 
@@ -88,6 +91,11 @@ def _rubbing(muscle: Muscle) -> Rubbing | None:
     return Rubbing(
         friction.coefficient * arm, friction.constant, friction.stiffness, 0.0 if diameter is None else diameter
     )
+
+
+def _law(law: Any) -> Any:
+    """The law as the energy knows it: rubber is neo-Hookean, wherever its one constant comes from."""
+    return pytrees.made(NeoHookean, {"c1": law.c1}) if isinstance(law, Rubber) else law
 
 
 def static_braid(p: Parameters) -> Number:

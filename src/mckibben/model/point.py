@@ -25,6 +25,7 @@ class Point(NamedTuple):
     excess: Any = None  #: theta' beyond that of fibres that do not stretch, cot(theta) lambda'/lambda [rad/m]
     roll: Any = None  #: angle phi [rad] by which a fibre's section turns about it; None where crossings hinder it
     roll_rate: Any = None  #: its derivative phi' = d phi/dv [rad/m]
+    give: Any = None  #: by how much the fittings give way, over H0: the same at all points; None where they are rigid
 
     @classmethod
     def cylinder(cls, theta: Number) -> "Point":

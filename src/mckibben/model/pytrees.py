@@ -13,7 +13,9 @@ import attrs
 import jax
 
 from mckibben import spec
-from mckibben.spec.laws import Constants
+from mckibben.spec.custom import Constants
+
+__all__ = ["made", "register"]
 
 CHILDREN = ("quantity", "count", "quantities", "part", "path", "held", "steps", "constants")
 """Kinds of declared fields that hold numbers, directly or further down."""
@@ -21,12 +23,12 @@ CHILDREN = ("quantity", "count", "quantities", "part", "path", "held", "steps", 
 Key = jax.tree_util.GetAttrKey
 
 
-def _made(cls: type, values: dict[str, Any]) -> Any:
+def made(cls: type, values: dict[str, Any]) -> Any:
     """An object of a spec class without its converters and checks."""
-    made: Any = object.__new__(cls)
+    new: Any = object.__new__(cls)
     for name, value in values.items():
-        object.__setattr__(made, name, value)
-    return made
+        object.__setattr__(new, name, value)
+    return new
 
 
 def _leaf(value: Any, count: bool) -> Any:
@@ -53,7 +55,7 @@ def _register(cls: type) -> None:
 
     def build(static: tuple[Any, ...], leaves: Any) -> Any:
         numbers = [_whole(leaf, count) for leaf, count in zip(leaves, counts, strict=True)]
-        return _made(cls, dict(zip(rest, static, strict=True)) | dict(zip(inner, numbers, strict=True)))
+        return made(cls, dict(zip(rest, static, strict=True)) | dict(zip(inner, numbers, strict=True)))
 
     def keyed(value: Any) -> tuple[list[tuple[Any, Any]], tuple[Any, ...]]:
         return [(Key(name), child) for name, child in zip(inner, children(value), strict=True)], aux(value)
@@ -76,7 +78,7 @@ def _register_path() -> None:
 
     def build(static: Any, leaves: Any) -> Any:
         mode, unit = static
-        return _made(spec.Path, {"waypoints": tuple(leaves), "mode": mode, "unit": unit})
+        return made(spec.Path, {"waypoints": tuple(leaves), "mode": mode, "unit": unit})
 
     _add(spec.Path, keyed, build, lambda path: (path.waypoints, (path.mode, path.unit)))
 

@@ -15,7 +15,7 @@ from mckibben.compiled.kernel import kernel
 from mckibben.discretise.fields import place
 from mckibben.model.parameters import Number, Parameters
 from mckibben.solver.equilibrium import Equilibrium
-from mckibben.solver.find import equilibrium, inside
+from mckibben.solver.find import inside, looked_at
 from mckibben.solver.held import Held, conditions, rows_of, targets_of
 from mckibben.solver.newton import bordered
 from mckibben.solver.path import Arriving, Trace, Watch
@@ -103,8 +103,8 @@ class _Branch:
 
     def inside(self, w: np.ndarray) -> bool:
         """Whether a state is one: converged, with a braid angle between 0 and 90 deg."""
-        state = equilibrium(self.problem, w[: self.size], w[self.size :])
-        return state.converged and inside(self.problem.evaluate(state.u).theta)
+        state, theta = looked_at(self.problem, w[: self.size], w[self.size :])
+        return state.converged and inside(theta)
 
 
 def branch(problem: Problem, start: Equilibrium, path: Sequence[Held], watch: Watch = lambda k, n: None) -> Trace:

@@ -11,7 +11,7 @@ from mckibben.solver.held import ROWS, Held, targets_of
 from mckibben.solver.problem import CLOSURE, LENGTH, VOLUME, Problem
 from mckibben.solver.trust_region import Minimum, Task, imbalance, minimise
 
-__all__ = ["along", "at_rest", "embedded", "equilibrium", "find", "refine"]
+__all__ = ["along", "at_rest", "embedded", "equilibrium", "find", "looked_at", "refine"]
 
 LEGS = 31
 """States on the way to what is held, where that is no minimum: with the first one a length that is compiled anyway."""
@@ -77,12 +77,12 @@ def _as_equilibrium(problem: Problem, solved: Minimum) -> Equilibrium:
 
 def equilibrium(problem: Problem, u: np.ndarray, loads: np.ndarray, iterations: int = 0) -> Equilibrium:
     """A state from its unknowns and loads, with the residual that it really has."""
-    return _looked_at(problem, u, loads, iterations)[0]
+    return looked_at(problem, u, loads, iterations)[0]
 
 
-def _looked_at(problem: Problem, u: np.ndarray, loads: np.ndarray, iterations: int) -> tuple[Equilibrium, Any]:
+def looked_at(problem: Problem, u: np.ndarray, loads: np.ndarray, iterations: int = 0) -> tuple[Equilibrium, Any]:
     """A state, and its braid angles."""
-    a = problem.evaluate(u)
+    a = problem.balance(u)
     signs = np.concatenate([[1.0], -loads, np.zeros(3 - len(loads))])
     residual = imbalance(signs, a.gradients)
     return Equilibrium(problem, u, loads, a.totals, residual < 1e-8, residual, iterations), a.theta
@@ -104,7 +104,7 @@ def along(
     states = follow_to(problem, path, here, tolerance)
     if len(states) == len(path):
         last = states[-1]
-        found, theta = _looked_at(problem, last.u, last.loads, sum(one.iterations for one in states[1:]))
+        found, theta = looked_at(problem, last.u, last.loads, sum(one.iterations for one in states[1:]))
         if found.converged and inside(theta):
             return found
     names = " and ".join(str(name) for name in held.names)

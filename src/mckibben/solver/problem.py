@@ -15,11 +15,23 @@ from mckibben.discretise.bspline import Spline
 from mckibben.discretise.fields import Placed, place, variables
 from mckibben.discretise.spectral import Line
 from mckibben.model.angle import radians
-from mckibben.model.energy import QUANTITIES
+from mckibben.model.energy import QUANTITIES, stored, works
 from mckibben.model.parameters import Number, Parameters
 from mckibben.solver.system import Unknowns, assemble, localise
 
-__all__ = ["CLOSURE", "LENGTH", "VOLUME", "Assembly", "Basis", "Problem", "evaluate", "setting", "slopes"]
+__all__ = [
+    "CLOSURE",
+    "LENGTH",
+    "VOLUME",
+    "Assembly",
+    "Balance",
+    "Basis",
+    "Problem",
+    "balance",
+    "evaluate",
+    "setting",
+    "slopes",
+]
 
 Basis = Line | Spline
 
@@ -52,6 +64,30 @@ def evaluate(basis: Basis, p: Parameters, b: Number, u: Float[Array, " m"]) -> A
 def braid_angle(basis: Basis, on: Placed, u: Array) -> Float[Array, " q"]:
     """theta at the points."""
     return radians(basis.form.point(variables(basis, on, u), on.p).theta)
+
+
+class Balance(NamedTuple):
+    """What of an `Assembly` tells whether a state is one: all but the second derivatives."""
+
+    theta: Float[Array, " q"]
+    totals: Float[Array, "4"]
+    gradients: Float[Array, "4 m"]
+
+
+@kernel
+def balance(basis: Basis, p: Parameters, b: Number, u: Float[Array, " m"]) -> Balance:
+    """By plain differentiation of the totals, which takes a quarter of the time of `evaluate` to compile."""
+    on = place(basis, p, b)
+    weights = jnp.asarray(basis.operators().weights) * on.jacobian
+
+    def totals(u: Array) -> tuple[Array, tuple[Array, Array]]:
+        at = basis.form.point(variables(basis, on, u), on.p)
+        densities = jax.vmap(lambda at: jnp.stack([stored(at, on.p), *works(at, on.p)]))(at)
+        found = weights @ densities / on.unit
+        return found, (radians(at.theta), found)
+
+    gradients, (theta, found) = jax.jacrev(totals, has_aux=True)(u)
+    return Balance(theta, found, gradients)
 
 
 class Setting(NamedTuple):
@@ -121,6 +157,10 @@ class Problem:
     def evaluate(self, u: np.ndarray) -> Assembly:
         """The four dimensionless quantities and their derivatives."""
         return Assembly(*map(np.asarray, evaluate(self.basis, self.p, self.b, u)))
+
+    def balance(self, u: np.ndarray) -> Balance:
+        """The four dimensionless quantities and their gradients: for a look at a state, not for a search."""
+        return Balance(*map(np.asarray, balance(self.basis, self.p, self.b, u)))
 
     def moved(self, du: np.ndarray) -> float:
         """Largest change of psi [rad] at the points by a change of the unknowns."""

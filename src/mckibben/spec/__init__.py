@@ -3,8 +3,9 @@
 from mckibben.spec.declared import describe, numbers, walk
 from mckibben.spec.errors import SpecError
 from mckibben.spec.fields import spec_classes
+from mckibben.spec.fittings import Fittings
 from mckibben.spec.friction import Friction
-from mckibben.spec.laws import LAWS, CustomLaw, Gent, Law, MooneyRivlin, NeoHookean, Ogden, Yeoh
+from mckibben.spec.laws import LAWS, ArrudaBoyce, CustomLaw, Gent, Law, MooneyRivlin, NeoHookean, Ogden, Rubber, Yeoh
 from mckibben.spec.loading import (
     TESTS,
     Along,
@@ -26,12 +27,14 @@ __all__ = [
     "LAWS",
     "TESTS",
     "Along",
+    "ArrudaBoyce",
     "BlockedForce",
     "Braid",
     "Chamber",
     "CustomLaw",
     "Ends",
     "Fibre",
+    "Fittings",
     "FreeContraction",
     "Friction",
     "Gas",
@@ -48,6 +51,7 @@ __all__ = [
     "Path",
     "PathMode",
     "Protocol",
+    "Rubber",
     "SpecError",
     "Step",
     "Test",

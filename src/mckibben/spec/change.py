@@ -19,16 +19,17 @@ __all__ = ["CHANGED", "changed", "changed_muscle", "changed_name", "left_behind"
 CHANGED = " (changed)"
 """Added to the name of a muscle that is no longer what its name says."""
 
-_FIBRE, _ANGLE = "braid.fibre.", "braid.angle"
-_STIFFNESSES, _MATERIAL = ("B1", "B2", "B3"), ("E", "nu")
+_ANGLE = "braid.angle"
+_EITHER = {"braid.fibre.": (("B1", "B2", "B3"), ("E", "nu")), "chamber.law.": (("E",), ("shore",))}
+"""Two ways to give a part, one of which replaces the other."""
 
 
 def changed_muscle(muscle: Any, values: Mapping[str, Any]) -> Any:
     """The muscle with all of `values` put in at once.
 
     What was changed, and all within it, leaves `assumed`; the name says that the muscle was changed. Giving B1, B2, B3
-    replaces a fibre's E and nu, and the other way round. An angle is measured from what the muscle's own was given
-    from. SpecError for an unknown name, or values that cannot be.
+    replaces a fibre's E and nu, and giving E a rubber's hardness; and the other way round. An angle is measured from
+    what the muscle's own was given from. SpecError for an unknown name, or values that cannot be.
     """
     given = dict(values)
     if "assumed" not in values:
@@ -78,20 +79,21 @@ def _grouped(values: Mapping[str, Any]) -> tuple[dict[str, Any], dict[str, dict[
 
 
 def left_behind(given: Iterable[Any], prefix: str) -> tuple[str, ...]:
-    """Fields of a fibre that have no meaning beside those given: E and nu beside stiffnesses, and the other way."""
-    names = set(given) if prefix == _FIBRE else set()
-    stiffnesses, material = names & set(_STIFFNESSES), names & set(_MATERIAL)
-    if bool(stiffnesses) == bool(material):  # nothing, or both, which the fibre refuses
+    """Fields that have no meaning beside those given: E and nu beside a fibre's stiffnesses, and the other way."""
+    names, (one, other) = set(given), _EITHER.get(prefix, ((), ()))
+    first, second = names & set(one), names & set(other)
+    if bool(first) == bool(second):  # nothing, or both, which the part refuses
         return ()
-    return _MATERIAL if stiffnesses else _STIFFNESSES
+    return other if first else one
 
 
 def still_assumed(assumed: Iterable[str], given: Iterable[str]) -> tuple[str, ...]:
     """Names of assumed fields that are neither given, nor within what is given, nor left behind by it."""
     said = list(given)
     said += [_ANGLE for name in said if name == f"{_ANGLE}_from"]
-    inside = [name.removeprefix(_FIBRE) for name in said if name.startswith(_FIBRE)]
-    said += [_FIBRE + name for name in left_behind(inside, _FIBRE)]
+    for prefix in _EITHER:
+        inside = [name.removeprefix(prefix) for name in said if name.startswith(prefix)]
+        said += [prefix + name for name in left_behind(inside, prefix)]
     return tuple(name for name in assumed if not any(name == field or name.startswith(field + ".") for field in said))
 
 

@@ -76,14 +76,16 @@ def quantity(
     default: Any = attrs.NOTHING,
     explain: Callable[[float], str] | None = None,
     doubt: Doubt | None = None,
+    read: Callable[[Any, str, Declared], Number] = read_quantity,
 ) -> Any:
     """A number with an SI unit ("1" for none). With `default=None` the field may be left out.
 
-    `size`: the least and the largest magnitude that are computed, beside 0 where that is in range.
+    `size`: the least and the largest magnitude that are computed, beside 0 where that is in range. `read`: what reads
+    a number that people write in a way of its own.
     """
     return declare(
         Declared(
-            kind="quantity", read=read_quantity, unit=unit, meaning=meaning, low=low, high=high, low_open=low_open,
+            kind="quantity", read=read, unit=unit, meaning=meaning, low=low, high=high, low_open=low_open,
             high_open=high_open, size=size, display=display or DISPLAY.get(unit, ""), source=source, advice=advice,
             default=default, explain=explain, doubt=doubt,
         )

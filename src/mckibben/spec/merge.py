@@ -23,8 +23,8 @@ _SHALLOWER = f"at most {DEEPEST} are read"
 def merged(base: Mapping[Any, Any], over: Mapping[Any, Any]) -> dict[Any, Any]:
     """The table of a muscle with the keys of `over` on top of those of `base`; what was overridden is not assumed.
 
-    A law of another name replaces the law, and stiffnesses (B1, B2, B3) replace a fibre's E and nu or the other way
-    round: the keys of two kinds of law or fibre do not mix.
+    A law of another name replaces the law, and stiffnesses (B1, B2, B3) replace a fibre's E and nu, or a hardness a
+    rubber's E, and the other way round: the keys of two kinds of law or fibre do not mix.
     """
     touched: list[str] = []
     result = _merged(base, over, "", touched)

@@ -13,6 +13,7 @@ from mckibben.spec.change import changed_muscle
 from mckibben.spec.declared import Reads, walk
 from mckibben.spec.errors import SpecError, nearest
 from mckibben.spec.fields import choice, count, part, quantity, spec, switch, words
+from mckibben.spec.fittings import Fittings
 from mckibben.spec.friction import Friction, check_friction
 from mckibben.spec.laws import LAWS, Law
 from mckibben.spec.limits import BENDING, check_angle, check_muscle
@@ -296,7 +297,8 @@ class Chamber:
 
     Args:
         thickness: wall thickness t0 as made [m], above 0.
-        law: hyperelastic law of the elastomer: `MooneyRivlin`, `NeoHookean`, `Yeoh`, `Ogden`, `Gent` or `CustomLaw`.
+        law: hyperelastic law of the elastomer: `MooneyRivlin`, `NeoHookean`, `Yeoh`, `Ogden`, `Gent`, `ArrudaBoyce`,
+            `CustomLaw`, or `Rubber` where nothing was tested.
 
     Raises:
         SpecError: for a thickness out of range, or a law that is none of these.
@@ -330,10 +332,11 @@ class Muscle:
         braid: the tube of fibres, a `Braid`.
         chamber: the elastomer tube, a `Chamber`, or None for a bare braid.
         ends: what the fittings hold, one of `Ends`: "clamped" (default), "pinned" or "free".
+        fittings: `Fittings` that give way, or None for rigid ones.
         friction: `Friction` where fibres cross, or None for the paper's, which turn freely.
         name: a name for people, shown in tables and files.
         assumed: names of the fields ("braid.fibres") whose values are assumptions; tables, pictures and files mark
-            them.
+            them. A hardness (`Rubber`) always is among them: the stiffness is estimated from it.
 
     Raises:
         SpecError: for a part of the wrong kind, or a name in `assumed` that is no field of this muscle.
@@ -349,11 +352,18 @@ class Muscle:
     braid: Braid = part(Braid, meaning="the tube of fibres")
     chamber: Chamber | None = part(Chamber, meaning="the elastomer tube, none for a bare braid", default=None)
     ends: Reads[Ends] = choice(Ends, meaning="what the fittings hold", default=Ends.CLAMPED)
+    fittings: Fittings | None = part(
+        Fittings, meaning="fittings that give way, none for rigid ones", default=None, quiet=True
+    )
     friction: Friction | None = part(Friction, meaning="friction where fibres cross", default=None, quiet=True)
     name: str | None = words(meaning="a name for people", default=None)
     assumed: tuple[str, ...] = words(meaning="names of fields whose values are assumptions", many=True, default=())
 
     def __attrs_post_init__(self) -> None:
+        law = None if self.chamber is None else self.chamber.law
+        estimated = [f"chamber.law.{name}" for name in getattr(law, "estimated", ())]
+        missing = tuple(field for field in estimated if field not in self.assumed)
+        object.__setattr__(self, "assumed", (*self.assumed, *missing))
         known = [field for field, _, _ in walk(self) if field not in ("name", "assumed")]
         for field in self.assumed:
             if field not in known:

@@ -16,9 +16,10 @@ import tomli_w
 from mckibben.spec import presets
 from mckibben.spec.contraction import DECLARED as CONTRACTION
 from mckibben.spec.contraction import takes_it
+from mckibben.spec.custom import CustomLaw
 from mckibben.spec.declared import Declared, describe, in_own_words
 from mckibben.spec.errors import MISSING, SpecError, nearest
-from mckibben.spec.laws import LAWS, CustomLaw
+from mckibben.spec.laws import LAWS
 from mckibben.spec.loading import TESTS, Step, Test
 from mckibben.spec.merge import apply_overrides, merged
 from mckibben.spec.muscle import Muscle
