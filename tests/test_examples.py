@@ -96,3 +96,10 @@ def test_working_range(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: 
     assert len(rows) == 6
     assert (tmp_path / "out" / "working_range.png").stat().st_size > 10_000
     assert (tmp_path / "out" / "force_map.png").stat().st_size > 10_000
+
+
+def test_friction_loop(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]) -> None:
+    rows = printed("friction_loop.py", tmp_path, monkeypatch, capsys)
+    assert rows[0] == pytest.approx([95.0, 103.0, 22.94], abs=0.011)
+    assert rows[1] == pytest.approx([90.0, 115.0, 105.57], abs=0.011)
+    assert (tmp_path / "out" / "friction_loop.png").stat().st_size > 10_000

@@ -6,9 +6,9 @@ from typing import Any
 
 _PUBLIC = {
     "mckibben.spec": (
-        "ArrudaBoyce", "Braid", "Chamber", "CustomLaw", "Ends", "Fibre", "Fittings", "Gent", "Joint", "MooneyRivlin",
-        "Muscle", "NeoHookean", "Ogden", "Rubber", "Yeoh", "BlockedForce", "FreeContraction", "Isobaric", "Isometric",
-        "Isotonic", "Protocol", "Step", "SpecError",
+        "ArrudaBoyce", "Braid", "Chamber", "CustomLaw", "Ends", "Fibre", "Fittings", "Friction", "Gent", "Joint",
+        "MooneyRivlin", "Muscle", "NeoHookean", "Ogden", "Rubber", "Yeoh", "BlockedForce", "FreeContraction",
+        "Isobaric", "Isometric", "Isotonic", "Protocol", "Step", "SpecError",
     ),
     "mckibben.spec.sleeve": ("centre_radius",),
     "mckibben.experiments.run": ("run",),

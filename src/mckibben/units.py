@@ -24,7 +24,9 @@ Quantity: TypeAlias = Any
 Number: TypeAlias = Any
 """An SI float, or the JAX array or tracer that takes its place while JAX differentiates or compiles."""
 
-DISPLAY = {"m": "mm", "Pa": "bar", "rad": "deg", "m^3": "mL", "N m^2": "N mm^2", "J": "mJ", "m/N": "mm/N"}
+DISPLAY = {
+    "m": "mm", "Pa": "bar", "rad": "deg", "m^3": "mL", "N m^2": "N mm^2", "N m": "N mm", "J": "mJ", "m/N": "mm/N",
+}  # fmt: skip
 """The unit each SI unit is shown in, where it is not itself."""
 
 _USUAL = {
@@ -32,7 +34,7 @@ _USUAL = {
     "Pa": ("Pa", 1.0), "kPa": ("Pa", 1e3), "MPa": ("Pa", 1e6), "GPa": ("Pa", 1e9), "bar": ("Pa", 1e5),
     "rad": ("rad", 1.0), "deg": ("rad", math.pi / 180.0), "N": ("N", 1.0), "mN": ("N", 1e-3), "kN": ("N", 1e3),
     "m^3": ("m^3", 1.0), "mL": ("m^3", 1e-6), "N m^2": ("N m^2", 1.0), "N mm^2": ("N m^2", 1e-6),
-    "J": ("J", 1.0), "mJ": ("J", 1e-3),
+    "N m": ("N m", 1.0), "N mm": ("N m", 1e-3), "J": ("J", 1.0), "mJ": ("J", 1e-3),
 }  # fmt: skip
 """The usual units with their SI unit and factor, which need no pint; a test compares them with pint's."""
 

@@ -5,6 +5,7 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
+from mckibben.experiments.foresee import refuse_friction
 from mckibben.experiments.run import run
 from mckibben.spec import Isobaric, Muscle, Step
 from mckibben.spec.plausible import trusted
@@ -43,6 +44,7 @@ def force_map(
     >>> table.force.sel(pressure=1e5).values.round(2)  # N
     array([101.22,  79.87,  61.77])
     """
+    refuse_friction(muscle, "force_map")
     (across,) = Step(length=length, contraction=contraction, force=0.0, points=points).as_steps(muscle)  # type: ignore[call-arg]
     grid = across, Step(force=0.0, pressure=pressure, points=points)
     lengths, pressures = (getattr(step, name) for step, name in zip(grid, ("length", "pressure"), strict=True))

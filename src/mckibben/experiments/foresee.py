@@ -8,11 +8,11 @@ from collections.abc import Iterator
 from mckibben.model.extension import longest
 from mckibben.model.parameters import parameters
 from mckibben.model.wall import touching_pressure
-from mckibben.spec import Muscle, Test
+from mckibben.spec import Muscle, SpecError, Test
 from mckibben.spec.angle import MAGIC, both_ways, tendency
 from mckibben.units import show
 
-__all__ = ["beyond", "derived", "turns"]
+__all__ = ["beyond", "derived", "refuse_friction", "turns"]
 
 
 def derived(muscle: Muscle) -> Iterator[tuple[str, str, str]]:
@@ -64,3 +64,11 @@ def beyond(muscle: Muscle, test: Test | None) -> Iterator[str]:
         length = max((float(value) for value in step.length.waypoints), default=0.0) if step.length is not None else 0.0
         if length >= most:
             yield f"note: the test asks for a length of {show(length, 'm')}; full extension is {show(most, 'm')}"
+
+
+def refuse_friction(muscle: Muscle, call: str) -> None:
+    """SpecError for a call that asks for states without a path, of a muscle whose states depend on it."""
+    if muscle.friction is not None:
+        said = f"does not go with {call}(): a state then depends on the path to it"
+        advice = 'use run(), or leave it out: muscle.replace("friction", None)'
+        raise SpecError("friction", allowed=said, advice=advice)

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any
 import attrs
 import numpy as np
 
+from mckibben.experiments.foresee import refuse_friction
 from mckibben.measure.caution import MuscleWarning
 from mckibben.results.verdict import Shape
 from mckibben.search.walk import BranchEnd, branch_end, look
@@ -98,6 +99,7 @@ def limits(muscle: Muscle, *, pressure: Any) -> Limits:
     >>> found.shortest_cause
     'the shape gives way to one side: ...'
     """
+    refuse_friction(muscle, "limits")
     P, bench = _value("pressure", pressure), Bench.of(muscle)
     longest = bench.longest if np.isfinite(bench.longest) else np.nan
     nothing = Limits(P, *(np.nan,) * 2, "", *(np.nan,) * 2, longest, *(np.nan,) * 2)
@@ -178,6 +180,7 @@ def least_pressure(muscle: Muscle, *, length: Any = None, contraction: Any = Non
     (nan, 'no equilibrium: the fibres are straight at 128.7786 mm, the longest possible length')
     """
     (step,) = Step(length=length, contraction=contraction, force=0.0).as_steps(muscle)  # type: ignore[call-arg]
+    refuse_friction(muscle, "least_pressure")
     h, bench = _value("length", step.length), Bench.of(muscle)
     found = float("nan") if h >= bench.longest else holding(bench, h, 0.0, shapes=shapes)
     if found == found:
@@ -228,6 +231,7 @@ def working_range(muscle: Muscle, *, pressures: Any) -> xr.Dataset:
     >>> (1e3 * region.shortest.values).round(1), (1e3 * region.longest.values).round(1)  # mm
     (array([32.1]), array([128.8]))
     """
+    refuse_friction(muscle, "working_range")
     step = Step(pressure=pressures, force=0.0)
     path = Path.parse(pressures, "Pa")
     found = [limits(muscle, pressure=Path((float(P),), unit="Pa")) for P in path.sample(step.points)]

@@ -12,6 +12,7 @@ from mckibben.compiled.kernel import kernel
 from mckibben.discretise.fields import place
 from mckibben.discretise.placement import crowdings
 from mckibben.discretise.spectral import Line
+from mckibben.experiments.foresee import refuse_friction
 from mckibben.experiments.run import crowding_for, solved
 from mckibben.measure.read import read
 from mckibben.model.parameters import Number, Parameters, parameters
@@ -61,6 +62,7 @@ def response(
     >>> found["force"].round(2).tolist()  # N
     [3.29, 52.36, 101.22]
     """
+    refuse_friction(muscle, "response")
     steps = differentiable(test.as_steps(muscle))
     p = parameters(muscle)
     fixed_p, fixed_steps = jax.tree.map(jax.lax.stop_gradient, (p, steps))

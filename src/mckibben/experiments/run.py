@@ -7,6 +7,7 @@ import numpy as np
 
 from mckibben.discretise.placement import crowding
 from mckibben.experiments.again import sought_again
+from mckibben.experiments.rubbing import rubbed
 from mckibben.measure import survey as surveying
 from mckibben.measure.caution import MuscleWarning, thick_wall
 from mckibben.measure.report import Part, report
@@ -22,7 +23,7 @@ from mckibben.solver.held import NAMES, Held
 from mckibben.solver.path import INTERRUPTED, LOOSE, Trace, Watch, trace
 from mckibben.solver.problem import Basis, Problem
 from mckibben.solver.threads import one_thread
-from mckibben.spec import Along, Muscle, Step, Test
+from mckibben.spec import Along, Muscle, SpecError, Step, Test
 
 __all__ = ["MuscleWarning", "corners", "crowding_for", "run", "solved"]
 
@@ -62,8 +63,13 @@ def run(
     bench = Bench.of(muscle)
     steps, tell = test.as_steps(muscle), watch or (lambda k, n: None)
     b = crowding_for(bench, steps)
-    parts = solved(bench, steps, b, tolerance, discretisation, tell)
-    if discretisation == "spectral":
+    if muscle.friction is not None:
+        if discretisation != "spectral":
+            raise SpecError("discretisation", discretisation, "is the paper's own mesh, whose crossings turn freely")
+        parts = rubbed(bench, steps, b, tolerance, tell)
+    else:
+        parts = solved(bench, steps, b, tolerance, discretisation, tell)
+    if discretisation == "spectral" and muscle.friction is None:
         for k, part in enumerate(parts):
             if not any(one.why == INTERRUPTED for one in parts):
                 parts[k] = sought_again(bench, part, b, tolerance, tell)

@@ -12,6 +12,7 @@ import numpy as np
 from mckibben.compiled.arrays import Array
 from mckibben.compiled.kernel import kernel
 from mckibben.discretise.fields import place
+from mckibben.experiments.foresee import refuse_friction
 from mckibben.experiments.response import differentiable, settled
 from mckibben.experiments.run import crowding_for, solved
 from mckibben.measure.judge import Judgement
@@ -70,6 +71,7 @@ def sensitivity(
     test.length  115 mm   5.39
     braid.angle  37 deg   5.35
     """
+    refuse_friction(muscle, "sensitivity")
     steps = differentiable(test.as_steps(muscle))
     index, row = _place(steps, state)
     columns = [list(OBSERVED).index(name) for name in _results(of, steps[index])]

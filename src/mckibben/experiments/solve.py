@@ -2,9 +2,11 @@
 
 from typing import Any
 
+import attrs
 import numpy as np
 
 from mckibben.experiments.answer import Answer, answer
+from mckibben.experiments.sliding import sliding_forces
 from mckibben.measure.caution import before
 from mckibben.measure.report import Part, report
 from mckibben.measure.survey import survey
@@ -15,7 +17,9 @@ from mckibben.search.walk import Look
 from mckibben.solver.bench import Bench
 from mckibben.solver.held import Held
 from mckibben.spec import Muscle, SpecError, Step
+from mckibben.spec.declared import evolved
 from mckibben.spec.plausible import trusted
+from mckibben.units import show
 
 __all__ = ["solve"]
 
@@ -48,7 +52,9 @@ def solve(
         A `State` with its `verdict` and `reason`. A state that is not stable on the direct way is sought in others
         too, and a stable one is given where any of them finds it. Where no admissible state is found the numbers are
         NaN, the reason says what was tried, and `last_good` is the last admissible state on the way there; where the
-        symmetric state tips to one side, `asymmetric` is the stable state it goes to.
+        symmetric state tips to one side, `asymmetric` is the stable state it goes to. What a muscle with friction does
+        depends on its path, which only `run` knows: it is solved without friction, and `force_interval` holds the
+        forces [N] at that length and pressure with all crossings slipping, as it shortens and as it lengthens.
 
     Raises:
         SpecError: for wrong input only.
@@ -65,8 +71,23 @@ def solve(
         if getattr(step, name).needs_present:
             raise SpecError(f"solve.{name}", str(getattr(step, name)), "must be one value", "a path needs run()")
     held = Held.of(**{name: float(getattr(step, name).sample(1)[0]) for name in step.controls})
+    if muscle.friction is not None:
+        return _without_path(muscle, step, held, tolerance)
     bench = Bench.of(muscle)
     return _state(bench, muscle, step, held, answer(bench, held, tolerance))
+
+
+def _without_path(muscle: Muscle, step: Step, held: Held, tolerance: float) -> State:
+    """The state of a muscle whose crossings rub, if they did not; and between which forces they leave it."""
+    bench = Bench.of(evolved(muscle, friction=None))
+    found = answer(bench, held, tolerance)
+    state = _state(bench, muscle, step, held, found)
+    forces = None if found.given is None else sliding_forces(Bench.of(muscle), found.given.state)
+    said = "without friction, since what it does depends on the path (run)"
+    if forces is not None:
+        low, high = (show(force, "N", 5) for force in forces)
+        said += f"; with it the force is from {low}, as the muscle shortens, to {high}, as it lengthens"
+    return attrs.evolve(state, reason=f"{state.reason}; {said}", force_interval=forces)
 
 
 def _state(bench: Bench, muscle: Muscle, step: Step, held: Held, found: Answer) -> State:

@@ -21,6 +21,7 @@ from mckibben.measure.peak import peak
 from mckibben.model.angle import cos, radians, slope
 from mckibben.model.energy import fittings_density, lagrangian
 from mckibben.model.fibres import axial_density, fibre_densities
+from mckibben.model.friction import crossing_density, crossing_moment
 from mckibben.model.kinematics import fibre_strains, height_rate, radius, volume_rate
 from mckibben.model.parameters import Number, Parameters
 from mckibben.model.point import Point
@@ -31,7 +32,7 @@ from mckibben.solver.problem import Basis
 from mckibben.solver.stability import stiffnesses
 from mckibben.solver.system import Local, System, Unknowns, assemble, localise, residual
 
-__all__ = ["ENERGIES", "NODES", "Reading", "Stable", "read", "read_many", "stable"]
+__all__ = ["ENERGIES", "NODES", "Reading", "Stable", "costates", "nodes", "read", "read_many", "stable", "states_at"]
 
 ENERGIES = ("bending_1", "bending_2", "twist", "chamber")
 """The parts of the stored energy, in the order in which they are kept."""
@@ -54,34 +55,35 @@ def nodes(basis: Basis) -> int:
     return NODES // 2 + 1 if basis.half else NODES
 
 
-def read(basis: Basis, on: Placed, state: Unknowns) -> Reading:
-    """Everything of one state."""
+def read(basis: Basis, on: Placed, state: Unknowns, kept: Any = None) -> Reading:
+    """Everything of one state; `kept` is what the output points remember, where there is a memory."""
     p, sampling, operators = on.p, basis.sampling(nodes(basis)), basis.operators()
     F, P = state.loads[0] * on.unit[0] / on.unit[1], state.loads[1] * on.unit[0] / on.unit[2]
     M = state.loads[2] * on.unit[0] if basis.closes else 0.0
-    inner = _points(basis, on, state.u)
+    inner, memory = states_at(basis, on, state.u), state.memory
     outer = points_at(basis, on, state.u, sampling)
 
-    def local(at: Point) -> tuple[tuple[Array, ...], Array, Array]:
-        return tuple(_densities(at, p).values()), height_rate(at, p), volume_rate(at, p)
+    def local(at: Point, memory: Any) -> tuple[tuple[Array, ...], Array, Array]:
+        return tuple(_densities(at, p, memory).values()), height_rate(at, p), volume_rate(at, p)
 
-    densities, rate, swept = jax.vmap(local)(inner)
-    names = tuple(_densities(jax.tree.map(lambda rows: rows[0], inner), p))
+    densities, rate, swept = jax.vmap(local)(inner, memory)
+    first, of_first = jax.tree.map(lambda rows: rows[0], (inner, memory))
+    names = tuple(_densities(first, p, of_first))
     weights = jnp.asarray(operators.weights) * on.jacobian
     parts = [jnp.sum(weights * density) for density in densities]
     length, volume = jnp.sum(weights * rate), jnp.sum(weights * swept)
     length = length if inner.give is None else length + jnp.sum(weights * inner.give)
-    inner_costates, outer_costates = _costates(basis, on, inner, (F, P, M), sampling)
+    inner_costates, outer_costates = costates(basis, on, inner, (F, P, M), sampling, memory)
     q = len(weights)
-    points, costates = jax.tree.map(
-        lambda *both: jnp.concatenate(both), (inner, inner_costates), (outer, outer_costates)
+    points, pulls, memories = jax.tree.map(
+        lambda *both: jnp.concatenate(both), (inner, inner_costates, memory), (outer, outer_costates, kept)
     )  # fmt: skip
-    everywhere = jax.vmap(lambda at, c: _fields(at, c, F, P, p))(points, costates)
+    everywhere = jax.vmap(lambda at, c, kept: _fields(at, c, F, P, p, kept))(points, pulls, memories)
     found = {name: values[q:] for name, values in everywhere.items()}
     found["z"] = sampling.integral @ (on.jacobian * rate)
     checked = np.append(np.arange(q), q if basis.half else [q, -1])  # the mesh and the fittings
-    at, along = jax.tree.map(lambda rows: rows[checked], (points, costates))
-    variation = _variation(on, at, along, F, P, weights)
+    at, along = jax.tree.map(lambda rows: rows[checked], (points, pulls))
+    variation = _variation(on, at, along, F, P, weights) if memory is None else jnp.asarray(jnp.nan)
     extremes = jnp.stack([everywhere[name][:q] for name in ("fibre_tension", "r")])
     tallest = jax.vmap(lambda field: peak(field, basis.harmonics()))(extremes)
     numbers = {
@@ -93,30 +95,31 @@ def read(basis: Basis, on: Placed, state: Unknowns) -> Reading:
     return Reading(numbers, found, jnp.abs(found["psi"]).max(), variation, basis.tail(state.u))
 
 
-def _points(basis: Basis, on: Placed, u: Array) -> Point:
+def states_at(basis: Basis, on: Placed, u: Array) -> Point:
     """The state at the quadrature points."""
     return basis.form.point(with_sines(basis.form, variables(basis, on, u)), on.p)
 
 
-def _densities(at: Point, p: Parameters) -> dict[str, Number]:
+def _densities(at: Point, p: Parameters, memory: Any = None) -> dict[str, Number]:
     """The parts of the stored energy per unit v [J/m], by name."""
     parts = dict(zip(ENERGIES, (*fibre_densities(at, p), chamber_density(at, p)), strict=True))
     parts = parts if at.stretch is None else parts | {"stretch": axial_density(at, p)}
-    return parts if at.give is None else parts | {"fittings": fittings_density(at, p)}
+    parts = parts if at.give is None else parts | {"fittings": fittings_density(at, p)}
+    return parts if memory is None else parts | {"crossings": crossing_density(at, p, memory)}
 
 
 Costates = tuple[Array, ...]
 """Of what is integrated along the length: theta, and the logarithm of the stretch where fibres stretch."""
 
 
-def _costates(
-    basis: Basis, on: Placed, at: Point, loads: tuple[Number, ...], sampling: Any
-) -> tuple[Costates, Costates]:  # fmt: skip
+def costates(
+    basis: Basis, on: Placed, at: Point, loads: tuple[Number, ...], sampling: Any, memory: Any = None
+) -> tuple[Costates, Costates]:
     """Costates at the quadrature points and at the output points: p' = dL/dtheta of theta, q' = dL/dlog(lambda) of the
     stretch, which theta owes q excess/cos^2(theta).
 
     They are zero at mid-length of a symmetric state; where equal radii are a condition that of theta is its multiplier
-    at v = H0.
+    at v = H0. A state that a path led to is asked for with the memory that the quadrature points had.
     """
     F, P, M = loads
     p, middle = on.p, NODES // 2
@@ -127,27 +130,29 @@ def _costates(
         last = outer[-1] - end if basis.closes else outer[middle]
         return inner - last, outer - last
 
-    def pulls(at: Point) -> Array:
-        return slope(lambda theta: lagrangian(at._replace(theta=theta), p, F, P), at.theta)
+    def pulls(at: Point, memory: Any) -> Array:
+        return slope(lambda theta: lagrangian(at._replace(theta=theta), p, F, P, memory=memory), at.theta)
 
     if at.stretch is None:
-        inner, outer = swept(jax.vmap(pulls)(at), M)
+        inner, outer = swept(jax.vmap(pulls)(at, memory), M)
         return (inner,), (outer,)
 
-    def loaded(at: Point) -> Number:
-        return lagrangian(at, p, F, P, M)
+    def loaded(at: Point, memory: Any) -> Number:
+        return lagrangian(at, p, F, P, M, memory)
 
-    def turned(at: Point) -> tuple[Number, Number]:
-        stretched = jax.grad(lambda factor: loaded(at._replace(stretch=factor * at.stretch)))(1.0)
-        return stretched, slope(lambda theta: loaded(at._replace(theta=theta)), at.theta)
+    def turned(at: Point, memory: Any) -> tuple[Number, Number]:
+        stretched = jax.grad(lambda factor: loaded(at._replace(stretch=factor * at.stretch), memory))(1.0)
+        return stretched, slope(lambda theta: loaded(at._replace(theta=theta), memory), at.theta)
 
-    by_stretch, by_theta = jax.vmap(turned)(at)
+    by_stretch, by_theta = jax.vmap(turned)(at, memory)
     inner_stretch, outer_stretch = swept(by_stretch, 0.0)
     inner, outer = swept(by_theta - inner_stretch * at.excess / cos(at.theta) ** 2, 0.0)
     return (inner, inner_stretch), (outer, outer_stretch)
 
 
-def _fields(at: Point, costates: Costates, F: Number, P: Number, p: Parameters) -> dict[str, Number]:
+def _fields(
+    at: Point, costates: Costates, F: Number, P: Number, p: Parameters, memory: Any
+) -> dict[str, Number]:  # fmt: skip
     density = _densities(at, p)
     bending1, bending2, twist = (density[name] for name in ENERGIES[:3])
     hoop, axial, thickness = chamber_stretches(at, p)
@@ -159,13 +164,15 @@ def _fields(at: Point, costates: Costates, F: Number, P: Number, p: Parameters) 
         effects |= {"fibre_stretch": at.stretch, "density_stretch": density["stretch"]}
     if at.roll is not None:
         effects["roll"] = radians(at.roll)
+    if memory is not None:
+        effects["crossing_moment"] = crossing_moment(at, p, memory)
     return effects | {
         "theta": radians(at.theta), "psi": radians(at.psi), "r": radius(at, p),
         "stretch_hoop": hoop, "stretch_axial": axial, "stretch_thickness": thickness,
         "u1": u1, "u2": u2, "u3": u3,
         "density_bending_1": bending1, "density_bending_2": bending2, "density_twist": twist,
         "density_fibres": bending1 + bending2 + twist, "density_chamber": density["chamber"],
-        "fibre_tension": tension(at, costates, F, P, p),
+        "fibre_tension": tension(at, costates, F, P, p, memory),
         "share_chamber": chamber_axial / total_axial, "share_mesh": 1.0 - chamber_axial / total_axial,
         "contact_pressure": contact_pressure(at, P, p),
     }  # fmt: skip
@@ -207,22 +214,31 @@ AT_ONCE = 8
 
 @kernel
 def read_many(
-    basis: Basis, p: Parameters, b: Number, states: Unknowns, volume: Bool[Array, ""], count: Int[Array, ""]
+    basis: Basis,
+    p: Parameters,
+    b: Number,
+    states: Unknowns,
+    volume: Bool[Array, ""],
+    count: Int[Array, ""],
+    kept: Any = None,
 ) -> tuple[Reading, Stable, Array]:
     """Readings, stability and residuals of the first `count` of n states; beyond, what happens to be there.
+
+    Where they have a memory, `kept` is that of the output points (n rows).
 
     n is 1 or a multiple of `AT_ONCE`.
     """
     on, n = place(basis, p, b), len(states.u)
     size = min(n, AT_ONCE, batch_size(basis.unknowns))
 
-    def one(state: Unknowns) -> tuple[Reading, Stable, Array]:
+    def one(state: Unknowns, kept: Any) -> tuple[Reading, Stable, Array]:
         local = localise(basis, on, state)
         s = assemble(basis, on, local, len(state.loads))
-        return read(basis, on, state), stable(basis, on, local, s, volume), residual(s, state.loads)
+        return read(basis, on, state, kept), stable(basis, on, local, s, volume), residual(s, state.loads)
 
     def some(k: Array) -> Any:
-        return jax.vmap(one)(jax.tree.map(lambda rows: jax.lax.dynamic_slice_in_dim(rows, k * size, size), states))
+        rows = jax.tree.map(lambda rows: jax.lax.dynamic_slice_in_dim(rows, k * size, size), (states, kept))
+        return jax.vmap(one)(*rows)
 
     found: tuple[Reading, Stable, Array] = filled(some, (count + size - 1) // size, n)
     return found

@@ -1,8 +1,9 @@
 """What solved states are worth: everything read off them, their modes and verdicts, an estimate of their error."""
 
-from typing import Any
+from typing import Any, NamedTuple
 
 import attrs
+import jax
 import numpy as np
 
 from mckibben.measure.judge import Judgement, judge, shape_of
@@ -17,7 +18,7 @@ from mckibben.solver.problem import Basis, Problem
 from mckibben.solver.stability import count_modes, of_states
 from mckibben.solver.system import Unknowns
 
-__all__ = ["PLAIN_SLOPE", "STRETCHED", "Survey", "error_bound", "errors", "padded_states", "prepare", "survey"]
+__all__ = ["PLAIN_SLOPE", "STRETCHED", "Kept", "Survey", "error_bound", "errors", "padded_states", "prepare", "survey"]
 
 ROUNDING = 1e-11
 """Relative error that rounding leaves in a force or length at best."""
@@ -79,14 +80,27 @@ def prepare(basis: Basis, p: Parameters, b: float, count: int) -> None:
 
 def padded_states(states: Unknowns) -> Unknowns:
     """States repeated up to 1 or a power of two from 32, so that few shapes are compiled."""
-    return states if len(states.u) == 1 else Unknowns(padded(states.u), padded(states.loads))
+    padding: Unknowns = jax.tree.map(lambda rows: rows if len(rows) == 1 else padded(rows), states)
+    return padding
 
 
-def read_states(problem: Problem, u: np.ndarray, loads: np.ndarray, volume: bool) -> tuple[Reading, Stable, np.ndarray]:
+class Kept(NamedTuple):
+    """What n states of a path were found with: memories, n rows each."""
+
+    inner: Any  #: of the quadrature points
+    outer: Any  #: of the output points
+
+
+def read_states(
+    problem: Problem, u: np.ndarray, loads: np.ndarray, volume: bool, kept: Kept | None = None
+) -> tuple[Reading, Stable, np.ndarray]:
     """Readings of states u (n, m) under loads (n, l), as NumPy arrays."""
-    n = len(u)
-    states = padded_states(Unknowns(u, loads))
-    reading, stable, left = read_many(problem.basis, problem.p, problem.b, states, np.array(volume), np.array(n))
+    n, memories = len(u), kept or Kept(None, None)
+    states = padded_states(Unknowns(u, loads, memories.inner))
+    asked = [problem.basis, problem.p, problem.b, states, np.array(volume), np.array(n)]
+    if kept is not None:
+        asked.append(jax.tree.map(lambda rows: rows if n == 1 else padded(rows), memories.outer))
+    reading, stable, left = read_many(*asked)
     cut = Reading(
         {name: np.asarray(values)[:n] for name, values in reading.numbers.items()},
         {name: np.asarray(values)[:n] for name, values in reading.fields.items()},
@@ -95,9 +109,11 @@ def read_states(problem: Problem, u: np.ndarray, loads: np.ndarray, volume: bool
     return cut, Stable(*(np.asarray(part)[:n] for part in stable)), np.asarray(left)[:n]
 
 
-def survey(problem: Problem, u: np.ndarray, loads: np.ndarray, held: tuple[Any, ...]) -> Survey:
-    """Look at states u (n, m) under loads (n, l), found with `held` controlled."""
-    reading, stable, residual = read_states(problem, u, loads, "volume" in held)
+def survey(
+    problem: Problem, u: np.ndarray, loads: np.ndarray, held: tuple[Any, ...], kept: Kept | None = None
+) -> Survey:
+    """Look at states u (n, m) under loads (n, l), found with `held` controlled, and what they remembered."""
+    reading, stable, residual = read_states(problem, u, loads, "volume" in held, kept)
     certain = stable.length & stable.force & stable.antisymmetric
     if any(name in GASES for name in held):  # they were taken to be at held pressure
         certain = np.zeros_like(certain)
@@ -106,8 +122,10 @@ def survey(problem: Problem, u: np.ndarray, loads: np.ndarray, held: tuple[Any, 
         modes = [attrs.evolve(PLAIN, antisymmetric=None, softest_antisymmetric=None)] * len(u)
     open_ones = np.flatnonzero(~certain)
     if len(open_ones):
-        states = padded_states(Unknowns(u[open_ones], loads[open_ones]))
-        counted = count_modes(problem, of_states(problem, *states[:2], held), pressure_held="volume" not in held)
+        memory = None if kept is None else jax.tree.map(lambda rows: rows[open_ones], kept.inner)
+        states = padded_states(Unknowns(u[open_ones], loads[open_ones], memory))
+        tangents = of_states(problem, states.u, states.loads, held, states.memory)
+        counted = count_modes(problem, tangents, pressure_held="volume" not in held)
         for k, one in zip(open_ones, counted, strict=False):
             modes[k] = one
     shapes = [Shape.ORDINARY] * len(u)
@@ -116,7 +134,7 @@ def survey(problem: Problem, u: np.ndarray, loads: np.ndarray, held: tuple[Any, 
         shapes[k] = shape_of(*line)
     verdicts = [judge(mode, shape, "length" in held) for mode, shape in zip(modes, shapes, strict=True)]
     variation, tail = reading.conserved_variation, reading.coefficient_tail
-    near = nearly_straight(problem, reading.numbers["length"])
+    near = nearly_straight(problem, reading.numbers["length"]) | (kept is not None)  # memory: nothing is conserved
     numbers = reading.numbers | {
         "error_estimate": error_bound(variation, tail, near), "conserved_variation": variation,
         "coefficient_tail": tail,

@@ -12,6 +12,7 @@ import jax.numpy as jnp
 
 from mckibben.compiled.arrays import Array
 from mckibben.model.fibres import axial_density, fibre_densities
+from mckibben.model.friction import incremental_density, moved
 from mckibben.model.kinematics import closure_rate, height_rate, volume_rate
 from mckibben.model.parameters import Number, Parameters
 from mckibben.model.point import Point
@@ -29,11 +30,13 @@ LOADS = ("force", "pressure", "moment")
 def stored(at: Point, p: Parameters, memory: Any = None) -> Number:
     """Stored energy per unit v [J/m]: fibres (Eq. 20) and chamber (Eq. 26).
 
-    `memory` is what a material point keeps of the state before; nothing here has one yet.
+    `memory` is what a material point keeps of the state before: with friction, a `Crossing`. Without one the crossings
+    turn freely.
     """
     energy = sum(fibre_densities(at, p)) + chamber_density(at, p)
     energy = energy if at.stretch is None else energy + axial_density(at, p)
-    return energy if at.give is None else energy + fittings_density(at, p)
+    energy = energy if at.give is None else energy + fittings_density(at, p)
+    return energy if p.friction is None or memory is None else energy + incremental_density(at, p, memory)
 
 
 def fittings_density(at: Point, p: Parameters) -> Number:
@@ -42,8 +45,8 @@ def fittings_density(at: Point, p: Parameters) -> Number:
 
 
 def remember(at: Point, p: Parameters, memory: Any) -> Any:
-    """What a material point keeps once it has been in a state, from what it kept before; nothing here changes it."""
-    return memory
+    """What a material point keeps once it has been in a state, from what it kept before."""
+    return memory if p.friction is None else moved(at, p, memory)
 
 
 def works(at: Point, p: Parameters) -> tuple[Number, Number, Number]:

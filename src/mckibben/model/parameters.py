@@ -18,7 +18,7 @@ from mckibben.units import is_traced
 jax.config.update("jax_enable_x64", True)  # before anything is computed: every module of mechanics imports this one
 pytrees.register()
 
-__all__ = ["Number", "Parameters", "Tube", "functions", "numbers", "parameters", "static_braid"]
+__all__ = ["Number", "Parameters", "Rubbing", "Tube", "functions", "numbers", "parameters", "static_braid"]
 
 Number = Any
 """A float, a NumPy or JAX scalar, or a tracer."""
@@ -38,6 +38,15 @@ class Tube(NamedTuple):
     across: Number | None  #: (radius of the other face over that of the one that rides)^2 as made; None: a thin wall
 
 
+class Rubbing(NamedTuple):
+    """Numbers of the friction at the crossings, in SI units."""
+
+    arm: Number  #: friction coefficient times its arm, mu a [m]
+    moment: Number  #: part of the moment that does not depend on tension, m0 [N m]
+    stiffness: Number  #: k of a crossing that sticks [N m/rad]
+    diameter: Number  #: d of a fibre [m]; 0 where mu a is 0 and it does not matter
+
+
 class Parameters(NamedTuple):
     """Numbers of one muscle in SI units."""
 
@@ -55,6 +64,7 @@ class Parameters(NamedTuple):
     EA: Any = None  #: axial stiffness of a fibre [N]; None where the fibres do not stretch
     slack: Any = None  #: 1 if a fibre carries no compression, 0 if it does
     compliance: Any = None  #: of both fittings together [m/N]; None where they are rigid
+    friction: Any = None  #: `Rubbing` where crossings rub, None where they turn freely
 
 
 def parameters(muscle: Muscle) -> Parameters:
@@ -82,7 +92,18 @@ def numbers(muscle: Muscle) -> Parameters:
         fibre.EA,
         (1.0 if fibre.slack else 0.0) if fibre.stretch else None,
         None if muscle.fittings is None else muscle.fittings.compliance,
+        _rubbing(muscle),
     )  # fmt: skip
+
+
+def _rubbing(muscle: Muscle) -> Rubbing | None:
+    friction, diameter = muscle.friction, muscle.braid.fibre.diameter
+    if friction is None:
+        return None
+    arm = 0.0 if friction.arm is None else friction.arm
+    return Rubbing(
+        friction.coefficient * arm, friction.constant, friction.stiffness, 0.0 if diameter is None else diameter
+    )
 
 
 def _law(law: Any) -> Any:

@@ -7,11 +7,14 @@ sin(psi)/R0 keeps its two parts apart, w_c(r, s) that of the chamber and p the c
     N T sin(theta) = (F + pi r^2 P) cos(psi) + q sin(psi) - dw_c/ds
                      - [dw_f/dtheta - (dw_f/dtheta')'] sin(theta0) cos(theta)
 
+Where crossings rub, dw_f/dtheta gains what they resist with.
+
 Fibres that roll have a dw_f/dtheta' that depends on kappa, phi and phi': its derivative needs psi'' and phi'', which
 follow from equilibrium, (dL/dkappa)' = dL/dpsi - p d(theta')/dpsi and (dL/dphi')' = dL/dphi.
 """
 
 from functools import reduce
+from typing import Any
 
 import jax
 import jax.numpy as jnp
@@ -19,6 +22,7 @@ import jax.numpy as jnp
 from mckibben.model.angle import cos, radians, sin, slope
 from mckibben.model.energy import lagrangian
 from mckibben.model.fibres import axial_force, fibre_densities
+from mckibben.model.friction import pull
 from mckibben.model.kinematics import angle_rate, fibre_strains, radius, stretch_rate
 from mckibben.model.parameters import Number, Parameters
 from mckibben.model.point import Point
@@ -27,7 +31,9 @@ from mckibben.model.wall import chamber_pull
 __all__ = ["conserved", "tension"]
 
 
-def tension(at: Point, costates: tuple[Number, ...], F: Number, P: Number, p: Parameters) -> Number:
+def tension(
+    at: Point, costates: tuple[Number, ...], F: Number, P: Number, p: Parameters, memory: Any = None
+) -> Number:  # fmt: skip
     """Tension T [N] of one fibre at force F [N] and pressure P [Pa], from the costates of what is integrated.
 
     Of a fibre that stretches it is what its law gives; else it is the multiplier of inextensibility.
@@ -37,6 +43,7 @@ def tension(at: Point, costates: tuple[Number, ...], F: Number, P: Number, p: Pa
     (costate,), sine, cosine = costates, sin(p.theta0), cos(p.theta0)
     by_rate, by_rate_dv = _by_rate(at, costate, F, P, p)
     by_theta = slope(lambda t: sum(fibre_densities(at._replace(theta=t), p)), at.theta)
+    by_theta = by_theta if memory is None else by_theta + pull(at, p, memory)
     q = -(costate - by_rate) * cosine / (p.R0 * sin(at.theta))
     axial = F + jnp.pi * radius(at, p) ** 2 * P
     along = axial * cos(at.psi) + q * sin(at.psi) - chamber_pull(at, p)

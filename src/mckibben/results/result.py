@@ -171,6 +171,8 @@ class State:
         modes: numbers of negative (unstable) modes under length control, under force control, and antisymmetric ones.
         last_good: the last stable state on the way, where none was found at the target; a State, or None.
         asymmetric: the stable state that an antisymmetrically unstable one goes to; a State, or None.
+        force_interval: with friction, the forces [N] as the muscle shortens and as it lengthens; the state itself is
+            that without friction, because what there is with it depends on the path. None without friction.
 
     >>> state = mk.solve(mk.presets.paper(), length="115 mm", pressure="1 bar")
     >>> round(state.force, 2), state.verdict == "stable", state.modes.length_control
@@ -183,6 +185,7 @@ class State:
     modes: Modes | None  #: counts of negative modes
     last_good: State | None = None  #: the last stable state on the way, where none was found at the target
     asymmetric: State | None = None  #: the stable state to which an antisymmetrically unstable one goes
+    force_interval: tuple[float, float] | None = None  #: with friction: shortening and lengthening [N]
 
     @property
     def muscle(self) -> Muscle:

@@ -17,7 +17,9 @@ STEP: dict[str, tuple[str, str]] = {
     "energy_chamber": ("J", "energy of the chamber"),
     "energy_stretch": ("J", "fibre energy, stretch"),
     "energy_fittings": ("J", "energy of the fittings, which give way"),
+    "energy_crossings": ("J", "energy that crossings store elastically"),
     "energy": ("J", "stored energy"),
+    "dissipated": ("J", "energy lost by friction at the crossings since the muscle was made"),
     "work": ("J", "work done on the muscle since the first state"),
     "verdict": ("", "verdict"),
     "reason": ("", "reason for the verdict"),
@@ -55,6 +57,7 @@ FIELDS: dict[str, tuple[str, str]] = {
     "fibre_stretch": ("1", "stretch of the fibres"),
     "density_stretch": ("J/m", "fibre energy per unit v, stretch"),
     "roll": ("rad", "angle by which a fibre's section has turned about the fibre"),
+    "crossing_moment": ("N m", "moment of one crossing, positive against lengthening"),
     "share_mesh": ("1", "share of the axial load F + pi r^2 P carried by the mesh"),
     "share_chamber": ("1", "share of the axial load F + pi r^2 P carried by the chamber"),
     "contact_pressure": ("Pa", "pressure of the chamber on the mesh, below 0 where it would not touch"),
@@ -86,6 +89,9 @@ OPTIONAL: dict[str, Callable[[Muscle], bool]] = {
     "density_stretch": lambda muscle: muscle.braid.fibre.stretch,
     "energy_fittings": lambda muscle: muscle.fittings is not None,
     "roll": lambda muscle: muscle.braid.joint == Joint.PIN,
+    "energy_crossings": lambda muscle: muscle.friction is not None,
+    "dissipated": lambda muscle: muscle.friction is not None,
+    "crossing_moment": lambda muscle: muscle.friction is not None,
 }
 """Variables that only some muscles have."""
 

@@ -60,11 +60,13 @@ def tangents(
     return jax.vmap(one)(states)
 
 
-def of_states(problem: Problem, u: np.ndarray, loads: np.ndarray, names: tuple[Any, ...] = ()) -> Tangents:
+def of_states(
+    problem: Problem, u: np.ndarray, loads: np.ndarray, names: tuple[Any, ...] = (), memory: Any = None
+) -> Tangents:
     """Tangents of states u (n, m) under loads (n, l) on a problem; only the gas among `names` counts."""
     gas = next((name for name in names if name in GASES), "pressure")
     own, which = rows_of(("length", gas), problem.loads)
-    states = Unknowns(u, loads)
+    states = Unknowns(u, loads, memory)
     targets = np.zeros(problem.loads)
     return Tangents(*map(np.asarray, tangents((problem.basis, own), problem.p, problem.b, states, which, targets)))
 

@@ -7,6 +7,7 @@ from mckibben.spec.errors import SpecError
 from mckibben.spec.fibre import Fibre
 from mckibben.spec.fields import spec_classes
 from mckibben.spec.fittings import Fittings
+from mckibben.spec.friction import Friction
 from mckibben.spec.laws import LAWS, ArrudaBoyce, CustomLaw, Gent, Law, MooneyRivlin, NeoHookean, Ogden, Rubber, Yeoh
 from mckibben.spec.loading import (
     TESTS,
@@ -38,6 +39,7 @@ __all__ = [
     "Fibre",
     "Fittings",
     "FreeContraction",
+    "Friction",
     "Gas",
     "Gent",
     "Isobaric",

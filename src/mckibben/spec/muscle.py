@@ -17,6 +17,7 @@ from mckibben.spec.errors import SpecError, nearest
 from mckibben.spec.fibre import Fibre
 from mckibben.spec.fields import choice, count, part, quantity, spec, words
 from mckibben.spec.fittings import Fittings
+from mckibben.spec.friction import Friction, check_friction
 from mckibben.spec.limits import check_angle, check_muscle
 from mckibben.units import is_traced, show
 
@@ -143,6 +144,7 @@ class Muscle:
         chamber: the elastomer tube, a `Chamber`, or None for a bare braid.
         ends: what the fittings hold, one of `Ends`: "clamped" (default), "pinned" or "free".
         fittings: `Fittings` that give way, or None for rigid ones.
+        friction: `Friction` where fibres cross, or None for the paper's, which turn freely.
         name: a name for people, shown in tables and files.
         assumed: names of the fields ("braid.fibres") whose values are assumptions; tables, pictures and files mark
             them. A hardness (`Rubber`) always is among them: the stiffness is estimated from it.
@@ -164,6 +166,7 @@ class Muscle:
     fittings: Fittings | None = part(
         Fittings, meaning="fittings that give way, none for rigid ones", default=None, quiet=True
     )
+    friction: Friction | None = part(Friction, meaning="friction where fibres cross", default=None, quiet=True)
     name: str | None = words(meaning="a name for people", default=None)
     assumed: tuple[str, ...] = words(meaning="names of fields whose values are assumptions", many=True, default=())
 
@@ -176,6 +179,7 @@ class Muscle:
         for field in self.assumed:
             if field not in known:
                 raise SpecError("muscle.assumed", field, "is no field of this muscle", nearest(field, known))
+        check_friction(self.friction, self.braid.fibre.diameter)
         check_muscle(self)
 
     def __remark__(self) -> str:

@@ -107,6 +107,8 @@ def _group(muscle: Muscle, test: Test, values: dict[str, np.ndarray], index: np.
     )
     if any(name.endswith(".contraction") for name in values) or (relative and "braid.length" in values):
         return None  # so it is here
+    if muscle.friction is not None:
+        return None  # each state depends on the one before, point by point
     steps = test.as_steps(muscle)
     held = tuple(str(name) for name in steps[0].controls)
     if held[1:] != ("pressure",) or any(not _followed(step, held) for step in steps):

@@ -1,0 +1,206 @@
+"""A test on a muscle whose crossings rub: state by state, each from what the one before left behind.
+
+The muscle starts as it was made, at its own length and without pressure, its crossings free of moment. Where a test
+holds the pressure, that comes first, at the length as made; then the other quantity goes to its first value.
+"""
+
+from collections.abc import Sequence
+from typing import Any
+
+import attrs
+import jax
+import numpy as np
+
+from mckibben.measure.report import Part
+from mckibben.measure.rub import Stepped, fresh, rub
+from mckibben.measure.survey import ROUNDING, Kept, Survey, survey
+from mckibben.model.friction import Crossing
+from mckibben.solver.bench import QUICK, Bench, sizes_for
+from mckibben.solver.held import Held, rows_of, targets_of
+from mckibben.solver.path import INTERRUPTED, Watch
+from mckibben.solver.problem import Problem
+from mckibben.solver.system import Unknowns
+from mckibben.solver.threads import one_thread
+from mckibben.spec import Along, SpecError, Step
+
+__all__ = ["Going", "rubbed", "step_to"]
+
+LARGEST_TURN = 0.05
+"""Largest turn of a crossing [rad] in one step of the path; a longer way is taken in parts."""
+LARGEST = 48
+"""Unknowns up to which a path is walked anew: the error that the kink of the moment leaves falls slowly."""
+SMALLEST = 1.0 / 1024.0
+"""Smallest part of the way from state to state."""
+LOST = "no state was found on from the one before: the shape gives way, or there is none"
+
+
+@attrs.frozen
+class Going:
+    """Where a path has come: the last state, what its points remember from now on, and what it reads."""
+
+    state: Unknowns
+    outer: Crossing
+    present: dict[str, float]  #: length, volume, force and pressure in SI units
+    dissipated: float = 0.0  #: since the muscle was made [J]
+    iterations: int = 0
+    found: Stepped | None = None  #: the last state with what it was found from
+
+    @classmethod
+    def as_made(cls, problem: Problem) -> "Going":
+        """The muscle as made."""
+        inner, outer = (Crossing(*map(np.asarray, one)) for one in fresh(problem.basis, problem.p))
+        start = Unknowns(np.zeros(problem.basis.unknowns), np.zeros(problem.loads), inner)
+        present = {"length": problem.unit[1], "volume": problem.unit[2], "force": 0.0, "pressure": 0.0}
+        return cls(start, outer, {name: float(value) for name, value in present.items()})
+
+
+def step_to(problem: Problem, here: Going, begin: Held, end: Held) -> Going | None:
+    """From a state at which `begin` holds, straight to `end`; in parts where crossings turn far or Newton fails."""
+    own, which = rows_of(end.names, problem.loads)
+    share, part, iterations = 0.0, 1.0, here.iterations
+    now = attrs.evolve(here, iterations=0)
+    while share < 1.0:
+        if part < SMALLEST:
+            return None
+        aim = end if share + part >= 1.0 else begin.towards(end, share + part)
+        targets = targets_of((aim,), problem.unit, problem.loads)[0]
+        stuck = np.asarray(True)
+        found = rub((problem.basis, own), problem.p, problem.b, now.state, now.outer, which, targets, stuck)
+        if not found.good or found.largest_turn > LARGEST_TURN:
+            part *= 0.5
+            continue
+        now = _moved(problem, now, jax.tree.map(np.asarray, found))
+        share, part = share + part, min(2.0 * part, 1.0)
+    return attrs.evolve(now, iterations=now.iterations + iterations)
+
+
+def _moved(problem: Problem, now: Going, found: Stepped) -> Going:
+    """Where a path has come with one more state."""
+    unit = problem.load_unit
+    read = (*found.totals, found.state.loads[0] * unit[1], found.state.loads[1] * unit[2])
+    return Going(
+        found.state._replace(memory=found.next_inner), found.next_outer,
+        dict(zip(("length", "volume", "force", "pressure"), map(float, read), strict=True)),
+        now.dissipated + float(found.dissipated), now.iterations + int(found.iterations), found,
+    )  # fmt: skip
+
+
+@attrs.frozen
+class _Leg:
+    """One step of a test as far as it was walked."""
+
+    held: tuple[str, ...]
+    asked: int
+    possible: int  #: states before full extension
+    states: list[Going]
+    why: str  #: why it ended
+
+
+@one_thread()
+def rubbed(
+    bench: Bench, steps: tuple[Step, ...], b: float, tolerance: float, watch: Watch = lambda k, n: None
+) -> list[Part]:
+    """The states of every step, on as many unknowns as the tolerance needs, their points crowded by b.
+
+    Where slipping crossings border on sticking ones their moment has a kink, of which a series knows nothing: the error
+    is told by how much force and length differ from those on half as many unknowns.
+    """
+    for step in steps:
+        if step.gas is not None or step.along == Along.BRANCH:
+            what = "a sealed gas" if step.gas is not None else 'along="branch"'
+            raise SpecError("friction", allowed=f"does not go with {what}", advice="hold values, or leave friction out")
+    coarse: list[_Leg] | None = None
+    errors: list[np.ndarray] = []
+    for size in (QUICK, *(size for size in sizes_for("spectral", tolerance) if QUICK < size <= LARGEST)):
+        problem = bench.problem(size, b)
+        legs = _walked(bench, problem, steps, watch)
+        if coarse is not None:
+            errors = [_differences(bench, *pair) for pair in zip(legs, coarse, strict=True)]
+            if all((error <= tolerance).all() for error in errors):
+                break
+        if any(leg.why == INTERRUPTED for leg in legs):
+            break
+        coarse = legs
+    errors = errors or [np.full(len(leg.states), np.nan) for leg in legs]
+    return [_part(problem, *pair) for pair in zip(legs, errors, strict=True)]
+
+
+def _differences(bench: Bench, leg: _Leg, coarse: _Leg) -> np.ndarray:
+    """Of length and force from those of a coarser space, over the length and the axial load of mesh and chamber."""
+    area, found = float(np.pi * bench.p.R0**2), []
+    for one, other in zip(leg.states, coarse.states, strict=False):
+        now, then = one.present, other.present
+        load = max(abs(now["force"]), abs(area * now["pressure"]), 1e-300)
+        by_load = max(abs(now["force"] - then["force"]), area * abs(now["pressure"] - then["pressure"])) / load
+        found.append(max(by_load, abs(now["length"] - then["length"]) / now["length"]))
+    return np.array(found + [np.nan] * (len(leg.states) - len(found)))
+
+
+def _walked(bench: Bench, problem: Problem, steps: tuple[Step, ...], watch: Watch) -> list[_Leg]:
+    """Every step in turn; after one that was not finished none is tried."""
+    here: Going | None = Going.as_made(problem)
+    legs: list[_Leg] = []
+    total, done = sum(step.points for step in steps), 0
+    for step in steps:
+        n, held = step.points, tuple(str(name) for name in step.controls)
+        if here is None:
+            legs.append(_Leg(held, n, n, [], "the step before was not finished"))
+            continue
+        wanted = np.stack([getattr(step, name).sample(n, here.present[name]) for name in held], axis=1)
+        beyond = np.flatnonzero(wanted[:, 0] >= bench.longest) if held[0] == "length" else np.zeros(0, int)
+        possible = int(beyond[0]) if len(beyond) else n
+        path = [Held(held, tuple(row)) for row in wanted[:possible].tolist()]
+        states, why = _states(problem, here, path, lambda k, _, done=done: watch(done + k, total), first=not legs)
+        why = bench.too_long() if len(states) == possible < n and why != INTERRUPTED else why
+        legs.append(_Leg(held, n, possible, states, why))
+        here = states[-1] if len(states) == n else None
+        done += n
+    return legs
+
+
+def _states(problem: Problem, here: Going, path: Sequence[Held], watch: Any, first: bool) -> tuple[list[Going], str]:
+    """The states of a path as far as they were reached, and why it ended."""
+    states: list[Going] = []
+    try:
+        now = _pressurised(problem, here, path[0]) if first and path else here
+        for k, held in enumerate(path):
+            if now is None:
+                return states, LOST
+            begin = Held(held.names, tuple(now.present[name] for name in held.names)) if not k else path[k - 1]
+            found = step_to(problem, attrs.evolve(now, iterations=0), begin, held)
+            if found is None:
+                return states, LOST
+            states.append(found)
+            now = found
+            watch(k + 1, len(path))
+    except KeyboardInterrupt:  # the part reached is worth keeping
+        return states, INTERRUPTED
+    return states, "converged"
+
+
+def _pressurised(problem: Problem, here: Going, held: Held) -> Going | None:
+    """The muscle at its length as made and the pressure that is held at first, if one is."""
+    pressure = held.get("pressure")
+    if pressure is None:
+        return here
+    legs = [Held.of(length=here.present["length"], pressure=value) for value in (0.0, pressure)]
+    return step_to(problem, here, *legs)
+
+
+def _part(problem: Problem, leg: _Leg, error: np.ndarray) -> Part:
+    """A step of the test with everything read off its states."""
+    states = leg.states
+    look = _seen(problem, states, leg.held, error) if states else None
+    return Part(leg.held, leg.asked, leg.possible, look, np.array([one.iterations for one in states], int), leg.why)
+
+
+def _seen(problem: Problem, states: list[Going], held: tuple[str, ...], error: np.ndarray) -> Survey:
+    """A survey of the states of a path."""
+    found = [one.found for one in states if one.found is not None]
+    u, loads = (np.stack([getattr(one.state, name) for one in found]) for name in ("u", "loads"))
+    memories = [Kept(one.state.memory, one.kept) for one in found]
+    kept: Kept = jax.tree.map(lambda *rows: np.stack(rows), *memories)
+    look = survey(problem, u, loads, held, kept)
+    dissipated = np.array([one.dissipated for one in states])
+    error = np.where(np.isnan(error), look.error, np.maximum(error, ROUNDING))
+    return attrs.evolve(look, numbers=look.numbers | {"dissipated": dissipated, "error_estimate": error})

@@ -1,0 +1,59 @@
+"""The forces between which a muscle whose crossings rub may be: all of them slip one way, or all the other way."""
+
+from typing import Any
+
+import attrs
+import numpy as np
+
+from mckibben.experiments.rubbing import Going
+from mckibben.measure.rub import rub
+from mckibben.model.friction import Crossing
+from mckibben.solver.bench import Bench
+from mckibben.solver.equilibrium import Equilibrium
+from mckibben.solver.held import Held, rows_of, targets_of
+from mckibben.solver.system import Unknowns
+from mckibben.solver.threads import one_thread
+
+__all__ = ["sliding_forces"]
+
+FAR = 10.0
+"""Turn [rad] since crossings were free of moment, from which all of them slip: more than they can ever turn."""
+LEGS = 8
+"""Parts in which friction is brought up where it is too much at once."""
+
+
+@one_thread()
+def sliding_forces(bench: Bench, free: Equilibrium) -> tuple[float, float] | None:
+    """Forces [N] at the length and pressure of a state without friction, as the muscle shortens and as it lengthens.
+
+    None where there is no state in which all crossings slip.
+    """
+    forces = [_sliding(bench, free, way) for way in (-1.0, 1.0)]
+    return None if any(force is None for force in forces) else (forces[0], forces[1])  # type: ignore[return-value]
+
+
+def _sliding(bench: Bench, free: Equilibrium, way: float) -> float | None:
+    for legs in (1, LEGS):
+        state: Any = free
+        for share in np.arange(1, legs + 1) / legs:
+            state = _found(bench, free, state, way, float(share))
+            if state is None:
+                break
+        else:
+            return float(state.loads[0] * free.problem.load_unit[1])
+    return None
+
+
+def _found(bench: Bench, free: Equilibrium, start: Any, way: float, share: float) -> Unknowns | None:
+    """The state in which all crossings slip with a share of the friction, from one with less."""
+    friction = bench.p.friction
+    less = friction._replace(arm=share * friction.arm, moment=share * friction.moment)
+    problem = attrs.evolve(free.problem, p=bench.p._replace(friction=less))
+    made = Going.as_made(problem)
+    inner, outer = (Crossing(one.alpha - way * FAR, one.moment) for one in (made.state.memory, made.outer))
+    held = Held.of(length=free.length, pressure=free.pressure)
+    own, which = rows_of(held.names, problem.loads)
+    targets = targets_of((held,), problem.unit, problem.loads)[0]
+    state = Unknowns(np.asarray(start.u), np.asarray(start.loads), inner)
+    found = rub((problem.basis, own), problem.p, problem.b, state, outer, which, targets, np.asarray(False))
+    return found.state if found.good else None

@@ -1,0 +1,167 @@
+"""One step of a muscle whose crossings rub: the state at new targets, from what its points remember.
+
+Newton minimises the energy of the step at fixed moments M; the tension of the state found gives M anew, until it
+settles. Then the memory moves on. All of it is one compiled function.
+"""
+
+from typing import Any, NamedTuple
+
+import jax
+import jax.numpy as jnp
+from jaxtyping import Bool, Float, Int
+
+from mckibben.compiled.arrays import Array
+from mckibben.compiled.kernel import kernel
+from mckibben.discretise.fields import Placed, place, points_at
+from mckibben.measure.read import costates, nodes, states_at
+from mckibben.model.energy import works
+from mckibben.model.friction import Crossing, as_made, crossings, moved, slip_moment, turn
+from mckibben.model.parameters import Number, Parameters
+from mckibben.model.point import Point
+from mckibben.model.tension import tension
+from mckibben.solver.held import conditions
+from mckibben.solver.newton import correct
+from mckibben.solver.problem import Basis
+from mckibben.solver.system import Unknowns, system
+
+__all__ = ["Stepped", "fresh", "rub"]
+
+CORRECTIONS = 40
+"""Newton systems at most for one set of moments: a few where all crossings go on, some ten where they turn back."""
+CLOSE = 1e-9
+"""Largest change of an unknown in the last Newton step, at most."""
+ROUNDS = 20
+"""Sets of moments at most; each is closer than the one before by about mu a/l, some hundredth."""
+SETTLED = 1e-8
+"""Largest change of a moment in the last round over the largest moment, at most."""
+
+
+class Stepped(NamedTuple):
+    """A state with what it was found from and what it leaves behind."""
+
+    state: Unknowns  #: with the memory of its quadrature points as the step began, and the moments it ended with
+    kept: Crossing  #: the same of the output points
+    next_inner: Crossing  #: what the points remember from now on
+    next_outer: Crossing
+    totals: Float[Array, "2"]  #: length [m] and volume [m^3]
+    dissipated: Float[Array, ""]  #: in this step [J]
+    largest_turn: Float[Array, ""]  #: of a crossing in this step [rad]
+    iterations: Int[Array, ""]
+    good: Bool[Array, ""]
+
+
+class _Round(NamedTuple):
+    state: Unknowns
+    outer: Crossing
+    change: Array  #: largest change of a moment over the largest moment
+    rounds: Array
+    iterations: Array
+    good: Array
+
+
+def fresh(basis: Basis, p: Parameters) -> tuple[Crossing, Crossing]:
+    """Memories as made, of the quadrature points and the output points."""
+    made, counts = as_made(p), (basis.points, nodes(basis))
+    inner, outer = (Crossing(*(jnp.full(count, one) for one in made)) for count in counts)
+    return inner, outer
+
+
+@kernel
+def rub(
+    static: tuple[Basis, Any],
+    p: Parameters,
+    b: Number,
+    state: Unknowns,
+    kept: Crossing,
+    which: Int[Array, " l"],
+    targets: Float[Array, " l"],
+    stuck: Bool[Array, ""],
+) -> Stepped:
+    """The state at `targets` from one with its memory, `kept` that of the output points.
+
+    `stuck` has the first Newton step taken as if no crossing slipped: then it does not matter which of those at their
+    limit are so by a rounding error.
+    """
+    basis, own = static
+    on = place(basis, p, b)
+
+    def newton(state: Unknowns) -> tuple[Unknowns, Array, Array]:
+        s = system(basis, on, state)
+        c = correct(s, conditions(own, which, targets, on.unit, s.values, state.loads))
+        new = state._replace(u=state.u + c.step.u, loads=state.loads + c.step.loads)
+        return new, jnp.abs(c.step.u).max(), c.stable
+
+    def solved(start: Unknowns, stuck: Array) -> tuple[Unknowns, Array, Array]:
+        moment = start.memory.moment
+
+        def more(now: Any) -> Array:
+            _, change, taken, stable = now
+            return (change > CLOSE) & (taken < CORRECTIONS) & stable
+
+        def again(now: Any) -> Any:
+            state, _, taken, _ = now
+            held = jnp.where(stuck & (taken == 0), jnp.full_like(moment, p.friction.stiffness), moment)
+            new, change, stable = newton(state._replace(memory=start.memory._replace(moment=held)))
+            return new, change, taken + 1, stable
+
+        begin = (start, jnp.asarray(jnp.inf), jnp.zeros((), int), jnp.array(True))
+        found, change, taken, stable = jax.lax.while_loop(more, again, begin)
+        return found._replace(memory=start.memory), taken, stable & (change <= CLOSE)
+
+    def more(now: _Round) -> Array:
+        return (now.change > SETTLED) & (now.rounds < ROUNDS) & now.good
+
+    def again(now: _Round) -> _Round:
+        found, taken, good = solved(now.state, stuck & (now.rounds == 0))
+        inner, outer = moments(basis, on, found, now.outer)
+        change = jnp.abs(inner - found.memory.moment).max() / jnp.maximum(inner.max(), 1e-300)
+        return _Round(
+            found._replace(memory=found.memory._replace(moment=inner)), now.outer._replace(moment=outer), change,
+            now.rounds + 1, now.iterations + taken, good,
+        )  # fmt: skip
+
+    none = jnp.zeros((), int)
+    start = _Round(state, kept, jnp.asarray(jnp.inf), none, none, jnp.array(True))
+    found = jax.lax.while_loop(more, again, start)
+    return _after(basis, on, state, found)
+
+
+def _after(basis: Basis, on: Placed, begun: Unknowns, found: _Round) -> Stepped:
+    """What a step from a state leaves behind."""
+    p, state = on.p, found.state
+    inner, outer = states_at(basis, on, state.u), points_at(basis, on, state.u, basis.sampling(nodes(basis)))
+    next_inner, next_outer = (
+        jax.vmap(lambda at, memory: moved(at, p, memory))(at, memory)
+        for at, memory in ((inner, state.memory), (outer, found.outer))
+    )
+
+    def turned(at: Point) -> Array:
+        return jax.vmap(lambda at: turn(at, p))(at)
+
+    rates = jax.vmap(lambda at: works(at, p))(inner)
+    mean = 0.5 * (begun.memory.moment + state.memory.moment)  # of second order in the step, and never negative
+    slipped = mean * jnp.abs(next_inner.alpha - state.memory.alpha)
+    weights = jnp.asarray(basis.operators().weights) * on.jacobian
+    good = found.good & (found.change <= SETTLED) & jnp.isfinite(state.u).all()
+    return Stepped(
+        state, found.outer, next_inner, next_outer, jnp.stack([weights @ one for one in rates[:2]]),
+        crossings(p) * (weights @ slipped),
+        jnp.abs(turned(inner) - turned(states_at(basis, on, begun.u))).max(), found.iterations, good,
+    )  # fmt: skip
+
+
+def moments(basis: Basis, on: Placed, state: Unknowns, kept: Crossing) -> tuple[Array, Array]:
+    """M by the tension of a state, at the quadrature points and at the output points."""
+    p, sampling = on.p, basis.sampling(nodes(basis))
+    F, P = state.loads[0] * on.unit[0] / on.unit[1], state.loads[1] * on.unit[0] / on.unit[2]
+    M = state.loads[2] * on.unit[0] if basis.closes else 0.0
+    inner, outer = states_at(basis, on, state.u), points_at(basis, on, state.u, sampling)
+    along = costates(basis, on, inner, (F, P, M), sampling, state.memory)
+
+    def moment(at: Point, c: tuple[Array, ...], memory: Crossing) -> Number:
+        return slip_moment(at, tension(at, c, F, P, p, memory), p)
+
+    found, shown = (
+        jax.vmap(moment)(at, c, memory) for at, c, memory in ((inner, along[0], state.memory), (outer, along[1], kept))
+    )
+    return found, shown
