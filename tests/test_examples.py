@@ -2,6 +2,7 @@
 
 import re
 import runpy
+import warnings
 from pathlib import Path
 
 import numpy as np
@@ -103,3 +104,11 @@ def test_friction_loop(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: 
     assert rows[0] == pytest.approx([95.0, 103.0, 22.94], abs=0.011)
     assert rows[1] == pytest.approx([90.0, 115.0, 105.57], abs=0.011)
     assert (tmp_path / "out" / "friction_loop.png").stat().st_size > 10_000
+
+
+def test_home_made(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]) -> None:
+    with warnings.catch_warnings():
+        rows = printed("home_made.py", tmp_path, monkeypatch, capsys)
+    assert rows[0] == pytest.approx([3.0, 20.0, 16.01], abs=0.011)
+    assert rows[1] == pytest.approx([2.0, 7.74, 8.05], abs=0.011)
+    assert (tmp_path / "out" / "home_made.png").stat().st_size > 10_000
