@@ -50,8 +50,20 @@ def test_the_largest_comes_first_and_what_has_no_numbers_last(monkeypatch: pytes
 
 def test_they_are_sorted_by_what_they_do_to_the_force(found: mk.Effects) -> None:
     shares = np.abs(found.table["force [%]"].to_numpy())
-    assert len(shares) == 6
+    assert len(shares) == 7
     assert (np.diff(shares) <= 0.0).all()
+
+
+def test_friction_is_half_of_what_lies_between_lengthening_and_shortening(found: mk.Effects) -> None:
+    rubbing = mk.presets.paper().replace("friction", mk.Friction(coefficient=0.3, arm="0.1 mm"))
+    state = mk.solve(rubbing, **HELD)  # type: ignore[arg-type]
+    assert state.force_interval is not None
+    below, above = state.force_interval
+    share = 50.0 * (above - below) / state.force
+    assert_allclose(found.table.loc["friction at the crossings", "force [%]"], share, rtol=1e-9)
+    own = mk.effects(rubbing, **HELD)  # type: ignore[arg-type]
+    assert_allclose(own.table.loc["friction at the crossings", "force [%]"], share, rtol=1e-9)
+    assert_allclose(own.table.loc["stretch of the fibres", "force [%]"], found.table["force [%]"].min())
 
 
 def test_chart(found: mk.Effects) -> None:

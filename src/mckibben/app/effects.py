@@ -93,7 +93,7 @@ def _show(found: Effects) -> None:
         "peak_fibre_tension [%]": "fibre\ntension",
     }
     cells = [
-        [name, *(f"{row[f'{key} [%]']:+.2f} %" for key in shown), f"{row['time']:.1f}", row["switch"]]
+        [name, *(_share(row[f"{key} [%]"]) for key in shown), f"{row['time']:.1f}", row["switch"]]
         for name, row in frame.iterrows()
         if not row["reason"]
     ]
@@ -107,6 +107,10 @@ def _show(found: Effects) -> None:
         if assumed:
             say(f"{name}: the number is ASSUMED, put in your own")
     say("changes by the effect, with it against without; time: of a state, over that without it")
+
+
+def _share(value: float) -> str:
+    return f"{value:+.2f} %" if value == value else "-"
 
 
 def _as_json(found: Effects, file: str | None) -> dict[str, Any]:

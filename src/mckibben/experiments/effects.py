@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import time
+from collections.abc import Iterable
 from typing import Any
 
 import attrs
@@ -12,7 +13,8 @@ from mckibben.experiments.solve import solve
 from mckibben.results.effects import QUANTITIES, Effects
 from mckibben.results.result import State
 from mckibben.results.verdict import Verdict
-from mckibben.spec import Fittings, Muscle, SpecError, Step
+from mckibben.spec import Fittings, Friction, Muscle, SpecError, Step
+from mckibben.spec.declared import evolved
 from mckibben.spec.text import to_toml
 from mckibben.units import show
 
@@ -40,16 +42,21 @@ EFFECTS = (
         "fittings that give way", "fittings", Fittings(compliance="0.01 mm/N"), None,
         'fittings.compliance = "0.01 mm/N"', assumed=True,
     ),
+    Effect(
+        "friction at the crossings", "friction", Friction(coefficient=0.3, arm="0.1 mm"), None,
+        'friction = { coefficient = 0.3, arm = "0.1 mm" }', assumed=True,
+    ),
     Effect("ends that hold the radius", "ends", "clamped", "free", 'ends = "clamped"'),
 )  # fmt: skip
-"""What can be switched. The compliance is that of one measured membrane (theory page): put in your own."""
+"""What can be switched. Compliance and friction are those of measured Festo muscles (theory page): put in your own."""
 
 
 def effects(muscle: Muscle, *, length: Any = None, contraction: Any = None, pressure: Any) -> Effects:
     """The size of each effect for a muscle at a length and pressure: solved with it and without, nothing guessed.
 
-    Stretch and roll of the fibres, where the wall lies and how thick it is, fittings that give way, and the ends. What
-    a muscle already has is switched off for the comparison; the rest is switched on, one by one.
+    Stretch and roll of the fibres, where the wall lies and how thick it is, fittings that give way, friction, and the
+    ends. What a muscle already has is switched off for the comparison; the rest is switched on, one by one. Friction
+    has no one state: what is told is half of what lies between the forces as the muscle lengthens and as it shortens.
 
     Args:
         muscle: the specification.
@@ -72,13 +79,21 @@ def effects(muscle: Muscle, *, length: Any = None, contraction: Any = None, pres
     if any(getattr(step, name).needs_present for name in step.controls):
         raise SpecError("effects", allowed="length and pressure must be one value each")
     held = {name: float(getattr(step, name).sample(1)[0]) for name in ("length", "pressure")}
+    rubbing, muscle = muscle, evolved(muscle, friction=None)  # the other effects are told without it
     base, pace = _timed(muscle, held)
     if base.verdict != Verdict.STABLE:
         raise SpecError("effects", allowed=f"the muscle is not stable there: {base.reason}", advice="ask for another")
-    rows = [_row(muscle, held, effect, base, pace) for effect in EFFECTS]
+    rows = [_row(muscle, held, effect, base, pace) for effect in _own(EFFECTS, rubbing)]
     at = f"{show(held['length'], 'm')} and {show(held['pressure'], 'Pa')}"
-    about = {"title": f"size of effects at {at}", "muscle": to_toml(muscle, allow_custom=True)}
-    return Effects(muscle, held["length"], held["pressure"], _dataset(rows, about))
+    about = {"title": f"size of effects at {at}", "muscle": to_toml(rubbing, allow_custom=True)}
+    return Effects(rubbing, held["length"], held["pressure"], _dataset(rows, about))
+
+
+def _own(effects: Iterable[Effect], muscle: Muscle) -> list[Effect]:
+    """The effects, with the muscle's own friction where it has one."""
+    friction = muscle.friction
+    own: dict[str, Any] = {} if friction is None else {"on": friction, "switch": "friction, as given", "assumed": False}
+    return [attrs.evolve(one, **own) if one.field == "friction" else one for one in effects]
 
 
 def _timed(muscle: Muscle, held: dict[str, float]) -> tuple[State, float]:
@@ -121,6 +136,10 @@ def _has(muscle: Muscle, effect: Effect) -> bool:
 
 
 def _number(state: State, name: str) -> float:
+    """One quantity; of a muscle with friction the force as it lengthens, and nothing else."""
+    if state.result.muscle.friction is not None:
+        below, above = state.force_interval or (np.nan, np.nan)
+        return state.force + 0.5 * (above - below) if name == "force" else np.nan
     data = state.result.data.isel(step=0)
     if name == "middle_radius":
         return float(data["r"][data.sizes["v"] // 2])

@@ -33,7 +33,7 @@ def bars(effects: Effects) -> Figure:
     largest = 1e-3
     for k, (name, (label, colour)) in enumerate(SHOWN.items()):
         values = known[f"{name} [%]"].to_numpy()
-        largest = max(largest, float(np.abs(values).max(initial=0.0)))
+        largest = max(largest, float(np.nanmax(np.abs(values), initial=0.0)))
         axes.barh(np.arange(len(known)) + (k - 1) * BAR, values, height=0.9 * BAR, color=colour, label=label)
     for row, value in enumerate(known["force [%]"].tolist()):
         side = 1.0 if value >= 0.0 else -1.0
