@@ -3,7 +3,7 @@
 import numpy as np
 
 from mckibben.results.result import Result, about, dataset
-from mckibben.results.variables import FIELDS, STEP
+from mckibben.results.variables import FIELDS, STEP, has
 from mckibben.spec import Muscle, Test
 
 
@@ -11,8 +11,8 @@ def made(muscle: Muscle, test: Test, reached: int) -> Result:
     """A result with numbers out of a hat, of which the last states were not reached."""
     count, rng = sum(step.points for step in test.as_steps(muscle)), np.random.default_rng(1)
     v = np.linspace(0.0, muscle.braid.length, 129)
-    steps = {name: rng.normal(size=count) for name in STEP}
-    fields = {name: rng.normal(size=(count, len(v))) for name in FIELDS}
+    steps = {name: rng.normal(size=count) for name in STEP if has(muscle, name)}
+    fields = {name: rng.normal(size=(count, len(v))) for name in FIELDS if has(muscle, name)}
     for values in (*steps.values(), *fields.values()):
         values[reached:] = np.nan
     lost = np.arange(count) >= reached
