@@ -8,7 +8,8 @@ _PUBLIC = {
     "mckibben.spec": (
         "ArrudaBoyce", "Braid", "Chamber", "CustomLaw", "Ends", "Fibre", "Fittings", "Friction", "Gent", "Joint",
         "MooneyRivlin", "Muscle", "NeoHookean", "Ogden", "Rubber", "Yeoh", "BlockedForce", "FreeContraction",
-        "Isobaric", "Isometric", "Isotonic", "Protocol", "Step", "SpecError",
+        "Isobaric", "Isometric", "Isotonic", "Protocol", "Step", "Stiffening",
+        "SpecError",
     ),
     "mckibben.spec.sleeve": ("centre_radius",),
     "mckibben.experiments.run": ("run",),

@@ -18,7 +18,11 @@ def fibre_densities(at: Point, p: Parameters) -> tuple[Number, Number, Number]:
     strains, natural = fibre_strains(at, p), natural_strains(p)
     factor = p.N / (2.0 * sin(p.theta0))
     d1, d2, d3 = (factor * B * (u - u0) ** 2 for B, u, u0 in zip((p.B1, p.B2, p.B3), strains, natural, strict=True))
-    return d1, d2, d3
+    if p.stiffening is None:
+        return d1, d2, d3
+    n, c = p.stiffening.exponent, p.stiffening.curvature
+    more1, more2, more3 = (1.0 + 2.0 / n * ((u - u0) / c) ** (n - 2) for u, u0 in zip(strains, natural, strict=True))
+    return d1 * more1, d2 * more2, d3 * more3
 
 
 def axial_force(at: Point, p: Parameters) -> Number:

@@ -64,6 +64,7 @@ class Parameters(NamedTuple):
     EA: Any = None  #: axial stiffness of a fibre [N]; None where the fibres do not stretch
     slack: Any = None  #: 1 if a fibre carries no compression, 0 if it does
     compliance: Any = None  #: of both fittings together [m/N]; None where they are rigid
+    stiffening: Any = None  #: `spec.Stiffening` of the fibres, None for the paper's quadratic energy
     friction: Any = None  #: `Rubbing` where crossings rub, None where they turn freely
 
 
@@ -92,6 +93,7 @@ def numbers(muscle: Muscle) -> Parameters:
         fibre.EA,
         (1.0 if fibre.slack else 0.0) if fibre.stretch else None,
         None if muscle.fittings is None else muscle.fittings.compliance,
+        fibre.stiffening,
         _rubbing(muscle),
     )  # fmt: skip
 

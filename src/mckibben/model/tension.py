@@ -54,7 +54,11 @@ def _by_rate(at: Point, costate: Number, F: Number, P: Number, p: Parameters) ->
     """dw_f/dtheta' [N m] and its derivative by v [N]."""
     if at.roll is None:
         u1 = fibre_strains(at, p)[0]
-        return p.N * p.B1 * u1, -2.0 * p.N * p.B1 * cos(p.theta0) / p.R0 * cos(at.psi) * at.kappa
+        once, twice = p.N * p.B1 * u1, -2.0 * p.N * p.B1 * cos(p.theta0) / p.R0 * cos(at.psi) * at.kappa
+        if p.stiffening is None:
+            return once, twice
+        n, share = p.stiffening.exponent, (u1 / p.stiffening.curvature) ** (p.stiffening.exponent - 2)
+        return once * (1.0 + share), twice * (1.0 + (n - 1) * share)
     (theta, psi, phi), rates = _plain(at), (at.kappa, at.roll_rate)
 
     def moments(theta: Number, psi: Number, kappa: Number, phi: Number, phi_rate: Number) -> tuple[Number, ...]:

@@ -25,6 +25,7 @@ from mckibben.spec.loading import (
 from mckibben.spec.muscle import Braid, Joint, Muscle
 from mckibben.spec.path import Path, PathMode
 from mckibben.spec.reference import reference_markdown
+from mckibben.spec.stiffening import Stiffening
 
 __all__ = [
     "LAWS",
@@ -58,6 +59,7 @@ __all__ = [
     "Side",
     "SpecError",
     "Step",
+    "Stiffening",
     "Test",
     "Wall",
     "Yeoh",

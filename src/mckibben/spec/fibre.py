@@ -7,8 +7,9 @@ from enum import StrEnum
 
 from mckibben.spec.declared import Reads
 from mckibben.spec.errors import SpecError
-from mckibben.spec.fields import choice, quantity, spec, switch
+from mckibben.spec.fields import choice, part, quantity, spec, switch
 from mckibben.spec.limits import BENDING
+from mckibben.spec.stiffening import Stiffening
 from mckibben.units import Number
 
 __all__ = ["Fibre", "Natural"]
@@ -50,6 +51,7 @@ class Fibre:
         natural: shape of the fibre without stress, "helical" (as braided, the paper's) or "straight".
         stretch: True if the fibres stretch; False is the paper's.
         axial_stiffness: EA [N], tension over strain; of a round solid fibre it is E pi d^2/4 where it is not given.
+        stiffening: `Stiffening` of bending and twist, or None for the paper's quadratic energy.
         slack: True if a fibre that stretches carries no compression, as yarns do.
 
     Raises:
@@ -97,6 +99,9 @@ class Fibre:
         "N", meaning="axial stiffness EA of one fibre", low=0.0, low_open=True, size=(1e-6, 1e12), source=_STRETCH,
         default=None,
     )  # fmt: skip
+    stiffening: Stiffening | None = part(
+        Stiffening, meaning="bending and twist that stiffen, none for the paper's", default=None, quiet=True
+    )
     slack: Reads[bool] = switch(
         meaning="whether a fibre that stretches carries no compression", source=_STRETCH, default=False
     )
