@@ -43,7 +43,7 @@ _COMMA = re.compile(r",(\d+)\s*(.*)", re.DOTALL)
 """What follows the digits before a decimal comma: "12,5 mm"."""
 # Only names, one-digit powers and separators reach pint, whose own reader would evaluate any arithmetic ("9**9**9").
 _WORD = r"[A-Za-zµμ]+(?: ?(?:\^|\*\*) ?-?\d)?"
-_UNIT = re.compile(rf"{_WORD}(?:(?: ?[*/] ?| ){_WORD})*")
+_UNIT = re.compile(rf"(?:1 ?/ ?)?{_WORD}(?:(?: ?[*/] ?| ){_WORD})*")
 
 
 class UnitError(ValueError):
@@ -174,7 +174,7 @@ def _from_text(text: str, unit: str) -> float:
 
 def _example(unit: str) -> str:
     examples = {"m": '"12.5 mm"', "Pa": '"1 bar"', "rad": '"37 deg"', "N": '"20 N"', "m^3": '"40 mL"'}
-    examples |= {"N m^2": '"0.5 N mm^2"', "m/N": '"0.01 mm/N"', "1": "0.4"}
+    examples |= {"N m^2": '"0.5 N mm^2"', "m/N": '"0.01 mm/N"', "1/m": '"20 1/m"', "1": "0.4"}
     return "write it like " + examples.get(unit, f'"1 {unit}"')
 
 
