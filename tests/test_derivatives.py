@@ -112,9 +112,7 @@ def test_totals(case: str) -> None:
         np.testing.assert_allclose(found[:n], expected[:n], rtol=0.0, atol=1e-10 if isinstance(basis, Line) else 2e-5)
 
 
-@pytest.mark.parametrize(
-    ("muscle", "ends"), [(REFERENCE, "clamped"), (REFERENCE, "free"), (STRETCHING, "clamped"), (STRETCHING, "free")]
-)
+@pytest.mark.parametrize(("muscle", "ends"), [(REFERENCE, "clamped"), (REFERENCE, "free"), (STRETCHING, "clamped")])
 def test_antisymmetric_tangent_is_the_even_block_of_the_full_line(muscle: mk.Muscle, ends: str) -> None:
     """At a symmetric state, among disturbances that keep the end radii equal (or turn both free ends by as much)."""
     muscle = muscle.replace("ends", ends)
@@ -128,19 +126,21 @@ def test_antisymmetric_tangent_is_the_even_block_of_the_full_line(muscle: mk.Mus
     parts = [places[part] for part in full.basis.series.values()]
     last = places[parts[-1][-1] + 1 :]  # what the ends do
     odd, even = (np.concatenate([*(part[first::2] for part in parts), last]) for first in (1, 0))
-    if ends == "clamped":  # where fibres stretch, closure is told of disturbances that leave mid-length as it is
-        free = null_space(small.closure[0, :-1])
-        np.testing.assert_allclose(big.gradients[CLOSURE, even] @ free, 2.0 * small.closure[0, -1] @ free, atol=1e-12)
+    stretching = muscle.braid.fibre.EA is not None
+    if ends == "clamped" and not stretching:
+        np.testing.assert_allclose(big.gradients[CLOSURE, even], 2.0 * small.closure[0, 0], atol=1e-13)
     np.testing.assert_allclose(two.u[odd], one.u, atol=1e-12)
     signs = np.concatenate([[1.0], -two.loads, np.zeros(3 - len(two.loads))])
     keep, K = null_space(np.asarray(small.closure[0])), np.tensordot(signs, np.asarray(big.tangents), 1)
-    close = 5e-11 if muscle.braid.fibre.EA is None else 5e-9  # their shortest waves see the two quadratures
+    if ends == "clamped":  # disturbances that leave the radius and the angle of mid-length as they are
+        np.testing.assert_allclose(big.gradients[CLOSURE, even] @ keep, 0.0, atol=1e-11)
+    close = 5e-9 if stretching else 5e-11  # the shortest waves of fibres that stretch see the two quadratures
     antisymmetric = keep.T @ np.asarray(small.antisymmetric[0]) @ keep
     found = keep.T @ K[np.ix_(even, even)] @ keep
     np.testing.assert_allclose(found, antisymmetric, rtol=0.0, atol=close * np.abs(antisymmetric).max())
     symmetric = np.asarray(small.stiffness[0])
     np.testing.assert_allclose(K[np.ix_(odd, odd)], symmetric, rtol=0.0, atol=close * np.abs(symmetric).max())
-    assert np.abs(keep.T @ K[np.ix_(even, odd)]).max() < 1e-14 * np.abs(K).max()
+    assert np.abs(keep.T @ K[np.ix_(even, odd)]).max() < (1e-13 if stretching else 1e-14) * np.abs(K).max()
 
 
 def test_closing_moment_is_the_costate_at_the_fitting() -> None:

@@ -23,12 +23,11 @@ def giving(compliance: float = C, **changes: Any) -> mk.Muscle:
     return muscle
 
 
-@pytest.mark.parametrize("ends", ["clamped", "free"])
-def test_a_spring_in_series(ends: str) -> None:
+def test_a_spring_in_series() -> None:
     """At one force and pressure the braid is in the same state, and the muscle longer by C F."""
-    rigid = mk.presets.paper().replace("ends", ends)
+    rigid = mk.presets.paper()
     for length in ("100 mm", "115 mm"):
-        state = mk.solve(giving(ends=ends), length=length, pressure="1 bar", tolerance=1e-9)
+        state = mk.solve(giving(), length=length, pressure="1 bar", tolerance=1e-9)
         within = mk.solve(rigid, length=state.length - C * state.force, pressure="1 bar", tolerance=1e-9)
         assert state.verdict == "stable"
         assert_allclose(within.force, state.force, rtol=1e-8)

@@ -87,25 +87,20 @@ def _picture(found: Effects, suffix: str) -> bytes:
 def _show(found: Effects) -> None:
     """Print the table, the largest effect first, and what could not be told."""
     frame = found.table
-    shown = {
-        "force [%]": "force",
-        "middle_radius [%]": "radius at\nmid-length",
-        "peak_fibre_tension [%]": "fibre\ntension",
-    }
+    shown = {"force": "force", "middle_radius": "radius at\nmid-length", "peak_fibre_tension": "fibre\ntension"}
+    known = frame[frame["reason"] == ""]
     cells = [
-        [name, *(_share(row[f"{key} [%]"]) for key in shown), f"{row['time']:.1f}", row["switch"]]
-        for name, row in frame.iterrows()
-        if not row["reason"]
+        [name, *(_share(row[f"{key} [%]"]) for key in shown), f"{row['time']:.1f}"] for name, row in known.iterrows()
     ]
     title = str(found.data.attrs["title"])
-    heads = ["effect", *shown.values(), "time", "to switch it on"]
-    say(table(heads, cells, title=title[0].upper() + title[1:], right=range(1, 5), whole=(0, 5)))
+    heads = ["effect", *shown.values(), "time"]
+    say(table(heads, cells, title=title[0].upper() + title[1:], right=range(1, 5)), whole=True)
+    assumed = dict(zip(found.data["effect"].values, found.data["assumed"].values, strict=True))
+    for name, row in known.iterrows():
+        say(f"{name}: {row['switch']}{' (ASSUMED, put in your own number)' if assumed[name] else ''}")
     for name, row in frame.iterrows():
         if row["reason"]:
             say(f"{name}: {row['reason']}")
-    for name, assumed in zip(found.data["effect"].values, found.data["assumed"].values, strict=True):
-        if assumed:
-            say(f"{name}: the number is ASSUMED, put in your own")
     say("changes by the effect, with it against without; time: of a state, over that without it")
 
 

@@ -6,8 +6,6 @@ import math
 from collections.abc import Iterator
 
 from mckibben.model.extension import longest
-from mckibben.model.parameters import parameters
-from mckibben.model.wall import touching_pressure
 from mckibben.spec import Muscle, SpecError, Test
 from mckibben.spec.angle import MAGIC, both_ways, tendency
 from mckibben.units import show
@@ -39,9 +37,13 @@ def derived(muscle: Muscle) -> Iterator[tuple[str, str, str]]:
 
 def _chamber(muscle: Muscle) -> Iterator[tuple[str, str, str]]:
     """What follows from a chamber that is not the paper's."""
-    p = parameters(muscle)
-    if muscle.chamber is None or p.tube is None:
+    if muscle.chamber is None or not muscle.chamber.own:
         return
+    from mckibben.model.parameters import parameters  # here, because others need no JAX
+    from mckibben.model.wall import touching_pressure
+
+    p = parameters(muscle)
+    assert p.tube is not None
     hoop, axial = (float(x) for x in p.tube[:2])
     face = "outer" if muscle.chamber.inside else "inner"
     yield "chamber as mounted", f"{hoop:.4g} x {axial:.4g}", f"hoop and axial stretch of its {face} face"

@@ -3,11 +3,14 @@
 import math
 from collections.abc import Callable
 from functools import lru_cache
+from typing import TYPE_CHECKING
 
 from mckibben import spec
 from mckibben.model.elliptic import elliprd, elliprf
-from mckibben.model.parameters import Parameters
 from mckibben.units import Number
+
+if TYPE_CHECKING:  # what needs no solving, such as `mckibben check`, does not import JAX
+    from mckibben.model.parameters import Parameters
 
 LONG = 25.0
 """From this T on, the long muscle's limit is exact: what it leaves out is of order T exp(-2 T)."""
@@ -21,7 +24,7 @@ def longest(muscle: spec.Muscle) -> float:
     return full_extension(float(braid.radius), float(braid.length), float(braid.angle), str(muscle.ends))
 
 
-def longest_of(p: Parameters, ends: str) -> float:
+def longest_of(p: "Parameters", ends: str) -> float:
     """The same from a muscle's numbers."""
     if p.EA is not None or p.compliance is not None:
         return math.inf

@@ -115,7 +115,7 @@ def _law(law: Any) -> Any:
 
 def _tube(chamber: Chamber, braid: Braid) -> Tube | None:
     """What makes the chamber another than the paper's; None where nothing does."""
-    if not chamber.inside and not chamber.thick and chamber.length is None:
+    if not chamber.own:
         return None
     hoop, axial = chamber.stretches(braid.radius, braid.length)
     area = chamber.area(braid.radius)

@@ -117,6 +117,11 @@ class Chamber:
             raise SpecError("chamber.inner_diameter", show(self.inner_diameter, "m"), said, "leave some wall")
 
     @property
+    def own(self) -> bool:
+        """Whether it is another chamber than the paper's: inside, thick, or stretched as mounted."""
+        return self.inside or self.thick or self.length is not None
+
+    @property
     def inside(self) -> bool:
         """Whether the wall lies inside the radius of the fibres."""
         return self.lies == Side.INSIDE or self.outer_diameter is not None

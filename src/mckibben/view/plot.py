@@ -31,8 +31,9 @@ _TAKES = "a result of run, solve, sensitivity, effects, force_map or working_ran
 
 
 def plot(result: Any, kind: str = "auto") -> Figure:
-    """Draw what `run`, `solve`, `load`, `sensitivity`, `effects`, `force_map` or `working_range` gave. Nothing is
-    solved.
+    """Draw what `run`, `solve`, `load`, `sensitivity`, `effects`, `force_map` or `working_range` gave.
+
+    Nothing is solved.
 
     A result is drawn as the kind of its test asks for. Isometric and blocked: force against pressure. Isobaric: force
     against contraction. Isotonic and free contraction: contraction (and length) against pressure. Protocol and step:
