@@ -101,7 +101,7 @@ def test_energy_of_a_step() -> None:
         tau = float(friction.crossing_moment(at, p, memory))
         assert_allclose(tau, np.clip(0.01 * (beta - 0.01), -2e-5, 2e-5), rtol=1e-10)
         assert_allclose(jax.grad(energy)(theta), friction.pull(at, p, memory), rtol=1e-10)
-        after = friction.moved(at, p, memory)
+        after = friction.after_step(at, p, memory)
         assert_allclose(0.01 * (beta - float(after.alpha)), tau, rtol=1e-10)
     assert_allclose(friction.crossings(p), 26493.648410122617, rtol=1e-13)
 

@@ -4,10 +4,12 @@ from typing import Any
 
 import numpy as np
 import pytest
+import xarray as xr
 from numpy.testing import assert_allclose
 from scipy.optimize import brentq
 
 import mckibben as mk
+from mckibben.spec.text import to_toml
 
 pytestmark = pytest.mark.measure
 
@@ -109,6 +111,12 @@ def test_longer_than_straight_fibres() -> None:
     assert curve.data["error_estimate"].max() < 1e-6
 
 
+def test_cautions_beyond_straight_fibres() -> None:
+    """The cylinder by which they are judged is as long as its fibres at most: beyond, it says nothing of them."""
+    assert mk.cautions(stretching(), length="150 mm", pressure="1 bar") == ()
+    assert "pressure is above" in mk.cautions(stretching(), length="150 mm", pressure="150 bar")[0]
+
+
 def test_work_is_stored() -> None:
     """Change of the stored energy = integral of F dh + P dV."""
     curve = mk.run(stretching(), mk.Isobaric(pressure="1 bar", length="100 mm to 115 mm", points=61))
@@ -149,3 +157,17 @@ def test_stiffnesses_alone_tell_no_axial_one() -> None:
 def test_the_papers_mesh_refuses() -> None:
     with pytest.raises(mk.SpecError, match="neither stretch nor roll"):
         mk.run(stretching(), mk.Isometric(length="115 mm", pressure="1 bar"), discretisation="paper")
+
+
+def test_a_region_without_a_longest_length_says_so() -> None:
+    pressures = np.array([0.5e5, 1e5])
+    lengths = {name: ("pressure", np.full(2, 0.033)) for name in ("shortest", "stable_down_to")}
+    data = xr.Dataset(
+        {**lengths, "longest": ("pressure", np.full(2, np.nan))},
+        {"pressure": pressures},
+        {"muscle": to_toml(stretching()), "assumed": ""},
+    )
+    (axes,) = mk.plot(data).axes
+    labels = [text.get_text() for text in axes.get_legend().get_texts()]
+    assert "admissible and stable, with no longest length" in labels
+    assert "full extension" not in labels

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 from mckibben.app.console import COMPLETE, command, examples, say, show_json, table
+from mckibben.app.options import AsJson, Force, Overrides, Quiet
 
 if TYPE_CHECKING:
     from mckibben.results.effects import Effects
@@ -27,19 +28,14 @@ def effects(
     pressure: Annotated[str, typer.Option(metavar="PRESSURE", help='gauge pressure, such as "1 bar"')],
     length: Annotated[str | None, typer.Option(metavar="LENGTH", help='such as "115 mm"')] = None,
     contraction: Annotated[str | None, typer.Option(metavar="CONTRACTION", help="in place of the length")] = None,
-    overrides: Annotated[
-        list[str] | None,
-        typer.Option("--set", metavar="NAME=VALUE", help='change a value of the case, such as braid.angle="36 deg"'),
-    ] = None,
+    overrides: Overrides = None,
     output: Annotated[
         Path | None,
         typer.Option("--output", "-o", metavar="FILE", help="a table (.csv) or a chart (.png, .pdf, .svg)"),
     ] = None,
-    force: Annotated[bool, typer.Option("--force", help="replace the output file if it exists")] = False,
-    as_json: Annotated[
-        bool, typer.Option("--json", help="print one JSON object, in SI units, and nothing else")
-    ] = False,
-    quiet: Annotated[bool, typer.Option("--quiet", "-q", help="print nothing but errors")] = False,
+    force: Force = False,
+    as_json: AsJson = False,
+    quiet: Quiet = False,
 ) -> int:
     """Show how much each effect that can be switched on changes a muscle at one length and pressure.
 

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 from mckibben.app.console import COMPLETE, INCOMPLETE, command, examples, say, show_json, table
+from mckibben.app.options import AsJson, Force, Quiet, Tolerance
 
 if TYPE_CHECKING:
     from xarray import Dataset
@@ -37,9 +38,6 @@ Overrides = Annotated[
 Output = Annotated[
     Path | None, typer.Option("--output", "-o", metavar="FILE", help="a table (.csv) or a picture (.png, .pdf, .svg)")
 ]
-Force = Annotated[bool, typer.Option("--force", help="replace the output file if it exists")]
-AsJson = Annotated[bool, typer.Option("--json", help="print one JSON object, in SI units, and nothing else")]
-Quiet = Annotated[bool, typer.Option("--quiet", "-q", help="print nothing but errors")]
 
 
 def _muscle(case: Path, overrides: list[str] | None) -> Muscle:
@@ -133,7 +131,7 @@ def force_map(
         str | None, typer.Option(metavar="CONTRACTIONS", help='in place of the lengths, such as "0 to 25 %"')
     ] = None,
     points: Annotated[int | None, typer.Option(help="number of lengths and of pressures; 21 by default")] = None,
-    tolerance: Annotated[float, typer.Option(help="relative error aimed at, from 1e-10 to 1e-2")] = 1e-6,
+    tolerance: Tolerance = 1e-6,
     overrides: Overrides = None,
     output: Output = None,
     force: Force = False,

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from mckibben.app.console import command, examples, say, show_json
+from mckibben.app.options import AsJson, Force, Overrides, Quiet, Tolerance
 
 if TYPE_CHECKING:
     from mckibben.spec.text import Case
@@ -36,10 +37,7 @@ class Discretisation(StrEnum):
 @command
 def run(
     case: Annotated[Path, typer.Argument(metavar="CASE.toml", help="the case file: a muscle and a test")],
-    overrides: Annotated[
-        list[str] | None,
-        typer.Option("--set", metavar="NAME=VALUE", help='change a value of the case, such as braid.angle="36 deg"'),
-    ] = None,
+    overrides: Overrides = None,
     pressure: Annotated[
         list[str] | None,
         typer.Option(metavar="PRESSURE", help='in place of test.pressure; repeated, a curve for each: "1 bar"'),
@@ -48,15 +46,13 @@ def run(
         Path | None,
         typer.Option("--output", "-o", metavar="FILE", help="save to out.nc (everything) or out.csv (the table)"),
     ] = None,
-    force: Annotated[bool, typer.Option("--force", help="replace the output file if it exists")] = False,
-    tolerance: Annotated[float, typer.Option(help="relative error aimed at, from 1e-10 to 1e-2")] = 1e-6,
+    force: Force = False,
+    tolerance: Tolerance = 1e-6,
     discretisation: Annotated[
         Discretisation, typer.Option(help="spectral, or the paper's 43 B-splines to compare with")
     ] = Discretisation.spectral,
-    as_json: Annotated[
-        bool, typer.Option("--json", help="print one JSON object, in SI units, and nothing else")
-    ] = False,
-    quiet: Annotated[bool, typer.Option("--quiet", "-q", help="print nothing but errors")] = False,
+    as_json: AsJson = False,
+    quiet: Quiet = False,
 ) -> int:
     """Run the test of a case file and show its states.
 

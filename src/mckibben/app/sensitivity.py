@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 from mckibben.app.console import COMPLETE, INCOMPLETE, command, examples, say, show_json, table
+from mckibben.app.options import AsJson, Force, Overrides, Quiet, Tolerance
 
 if TYPE_CHECKING:
     from mckibben.results.sensitivity import Sensitivity
@@ -25,10 +26,7 @@ OUTPUTS = {".csv": "table", ".png": "tornado chart", ".pdf": "the same for print
 @command
 def sensitivity(
     case: Annotated[Path, typer.Argument(metavar="CASE.toml", help="the case file: a muscle and a test")],
-    overrides: Annotated[
-        list[str] | None,
-        typer.Option("--set", metavar="NAME=VALUE", help='change a value of the case, such as braid.angle="36 deg"'),
-    ] = None,
+    overrides: Overrides = None,
     of: Annotated[
         list[str] | None, typer.Option(metavar="RESULT", help="a result, such as force or peak_fibre_tension")
     ] = None,
@@ -40,12 +38,10 @@ def sensitivity(
         Path | None,
         typer.Option("--output", "-o", metavar="FILE", help="a table (.csv) or a chart (.png, .pdf, .svg)"),
     ] = None,
-    force: Annotated[bool, typer.Option("--force", help="replace the output file if it exists")] = False,
-    tolerance: Annotated[float, typer.Option(help="relative error aimed at, from 1e-10 to 1e-2")] = 1e-6,
-    as_json: Annotated[
-        bool, typer.Option("--json", help="print one JSON object, in SI units, and nothing else")
-    ] = False,
-    quiet: Annotated[bool, typer.Option("--quiet", "-q", help="print nothing but errors")] = False,
+    force: Force = False,
+    tolerance: Tolerance = 1e-6,
+    as_json: AsJson = False,
+    quiet: Quiet = False,
 ) -> int:
     """Show how much each number of a case matters to the result of its test: per cent per per cent.
 

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 from mckibben.app.console import COMPLETE, INCOMPLETE, INTERRUPTED, command, complain, examples, say, show_json, table
+from mckibben.app.options import Quiet, Tolerance
 
 if TYPE_CHECKING:
     from xarray import Dataset
@@ -41,11 +42,11 @@ def sweep(
     scheduler: Annotated[
         str | None, typer.Option(metavar="ADDRESS", help="a Dask scheduler that is running, such as tcp://head:8786")
     ] = None,
-    tolerance: Annotated[float, typer.Option(help="relative error aimed at, from 1e-10 to 1e-2")] = 1e-6,
+    tolerance: Tolerance = 1e-6,
     as_json: Annotated[
         bool, typer.Option("--json", help="print a summary as one JSON object, and nothing else")
     ] = False,
-    quiet: Annotated[bool, typer.Option("--quiet", "-q", help="print nothing but errors")] = False,
+    quiet: Quiet = False,
 ) -> int:
     """Run the test of a sweep file on all its designs, into a Zarr store.
 

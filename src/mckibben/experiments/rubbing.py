@@ -13,7 +13,7 @@ import numpy as np
 
 from mckibben.measure.report import Part
 from mckibben.measure.rub import Stepped, fresh, rub
-from mckibben.measure.survey import ROUNDING, Kept, Survey, survey
+from mckibben.measure.survey import ROUNDING, Memories, Survey, survey
 from mckibben.model.friction import Crossing
 from mckibben.solver.bench import QUICK, Bench, sizes_for
 from mckibben.solver.held import Held, rows_of, targets_of
@@ -198,8 +198,8 @@ def _seen(problem: Problem, states: list[Going], held: tuple[str, ...], error: n
     """A survey of the states of a path."""
     found = [one.found for one in states if one.found is not None]
     u, loads = (np.stack([getattr(one.state, name) for one in found]) for name in ("u", "loads"))
-    memories = [Kept(one.state.memory, one.kept) for one in found]
-    kept: Kept = jax.tree.map(lambda *rows: np.stack(rows), *memories)
+    memories = [Memories(one.state.memory, one.kept) for one in found]
+    kept: Memories = jax.tree.map(lambda *rows: np.stack(rows), *memories)
     look = survey(problem, u, loads, held, kept)
     dissipated = np.array([one.dissipated for one in states])
     error = np.where(np.isnan(error), look.error, np.maximum(error, ROUNDING))

@@ -1,5 +1,6 @@
 """`cautions()`: what a real muscle may do that is not in the model, told before solving or with the result."""
 
+import math
 from functools import partial
 from typing import Any, NamedTuple
 
@@ -45,7 +46,7 @@ Columns = dict[str, np.ndarray]
 
 
 def cautions(muscle: Muscle, *, length: Any, pressure: Any) -> tuple[str, ...]:
-    """Cautions about a target before anything is solved, judged by the uniform cylinder of the target length.
+    """Cautions about a target before anything is solved, by the uniform cylinder of that length that does not stretch.
 
     Thick wall, wrinkling, jammed fibres, a column in compression, fibre tension above the breaking force if one is
     given, a pressure above 100 bar, and one too low for a chamber inside the braid to touch it. A result carries the
@@ -70,7 +71,10 @@ def cautions(muscle: Muscle, *, length: Any, pressure: Any) -> tuple[str, ...]:
     if step.points != 1 or any(getattr(step, name).needs_present for name in step.controls):
         raise SpecError("cautions", allowed="length and pressure must be one value each")
     h, P = (float(getattr(step, name).waypoints[0]) for name in ("length", "pressure"))
-    cylinder = predicted(parameters(muscle), np.asarray(h), np.asarray(P))
+    p = parameters(muscle)
+    if p.endless and h * math.sin(muscle.braid.angle) >= muscle.braid.length:  # no such cylinder: a result tells more
+        return (*thick_wall(muscle), *strong({"length": np.array([h]), "pressure": np.array([P])}))
+    cylinder = predicted(p, np.asarray(h), np.asarray(P))
     force = float(cylinder.force)
     steps = {name: np.array([float(value)]) for name, value in (("length", h), ("pressure", P), ("force", force))}
     of = {

@@ -15,7 +15,7 @@ from mckibben.compiled.kernel import kernel
 from mckibben.discretise.fields import Placed, place, points_at
 from mckibben.measure.read import costates, nodes, states_at
 from mckibben.model.energy import works
-from mckibben.model.friction import Crossing, as_made, crossings, moved, slip_moment, turn
+from mckibben.model.friction import Crossing, after_step, as_made, crossings, slip_moment, turn
 from mckibben.model.parameters import Number, Parameters
 from mckibben.model.point import Point
 from mckibben.model.tension import tension
@@ -131,7 +131,7 @@ def _after(basis: Basis, on: Placed, begun: Unknowns, found: _Round) -> Stepped:
     p, state = on.p, found.state
     inner, outer = states_at(basis, on, state.u), points_at(basis, on, state.u, basis.sampling(nodes(basis)))
     next_inner, next_outer = (
-        jax.vmap(lambda at, memory: moved(at, p, memory))(at, memory)
+        jax.vmap(lambda at, memory: after_step(at, p, memory))(at, memory)
         for at, memory in ((inner, state.memory), (outer, found.outer))
     )
 

@@ -18,7 +18,17 @@ from mckibben.solver.problem import Basis, Problem
 from mckibben.solver.stability import count_modes, of_states
 from mckibben.solver.system import Unknowns
 
-__all__ = ["PLAIN_SLOPE", "STRETCHED", "Kept", "Survey", "error_bound", "errors", "padded_states", "prepare", "survey"]
+__all__ = [
+    "PLAIN_SLOPE",
+    "STRETCHED",
+    "Memories",
+    "Survey",
+    "error_bound",
+    "errors",
+    "padded_states",
+    "prepare",
+    "survey",
+]
 
 ROUNDING = 1e-11
 """Relative error that rounding leaves in a force or length at best."""
@@ -84,7 +94,7 @@ def padded_states(states: Unknowns) -> Unknowns:
     return padding
 
 
-class Kept(NamedTuple):
+class Memories(NamedTuple):
     """What n states of a path were found with: memories, n rows each."""
 
     inner: Any  #: of the quadrature points
@@ -92,10 +102,10 @@ class Kept(NamedTuple):
 
 
 def read_states(
-    problem: Problem, u: np.ndarray, loads: np.ndarray, volume: bool, kept: Kept | None = None
+    problem: Problem, u: np.ndarray, loads: np.ndarray, volume: bool, kept: Memories | None = None
 ) -> tuple[Reading, Stable, np.ndarray]:
     """Readings of states u (n, m) under loads (n, l), as NumPy arrays."""
-    n, memories = len(u), kept or Kept(None, None)
+    n, memories = len(u), kept or Memories(None, None)
     states = padded_states(Unknowns(u, loads, memories.inner))
     asked = [problem.basis, problem.p, problem.b, states, np.array(volume), np.array(n)]
     if kept is not None:
@@ -110,7 +120,7 @@ def read_states(
 
 
 def survey(
-    problem: Problem, u: np.ndarray, loads: np.ndarray, held: tuple[Any, ...], kept: Kept | None = None
+    problem: Problem, u: np.ndarray, loads: np.ndarray, held: tuple[Any, ...], kept: Memories | None = None
 ) -> Survey:
     """Look at states u (n, m) under loads (n, l), found with `held` controlled, and what they remembered."""
     reading, stable, residual = read_states(problem, u, loads, "volume" in held, kept)

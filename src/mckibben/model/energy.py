@@ -12,7 +12,7 @@ import jax.numpy as jnp
 
 from mckibben.compiled.arrays import Array
 from mckibben.model.fibres import axial_density, fibre_densities
-from mckibben.model.friction import incremental_density, moved
+from mckibben.model.friction import after_step, incremental_density
 from mckibben.model.kinematics import closure_rate, height_rate, volume_rate
 from mckibben.model.parameters import Number, Parameters
 from mckibben.model.point import Point
@@ -46,7 +46,7 @@ def fittings_density(at: Point, p: Parameters) -> Number:
 
 def remember(at: Point, p: Parameters, memory: Any) -> Any:
     """What a material point keeps once it has been in a state, from what it kept before."""
-    return memory if p.friction is None else moved(at, p, memory)
+    return memory if p.friction is None else after_step(at, p, memory)
 
 
 def works(at: Point, p: Parameters) -> tuple[Number, Number, Number]:

@@ -26,9 +26,7 @@ def longest(muscle: spec.Muscle) -> float:
 
 def longest_of(p: "Parameters", ends: str) -> float:
     """The same from a muscle's numbers."""
-    if p.EA is not None or p.compliance is not None:
-        return math.inf
-    return full_extension(float(p.R0), float(p.H0), float(p.theta0), ends)
+    return math.inf if p.endless else full_extension(float(p.R0), float(p.H0), float(p.theta0), ends)
 
 
 @lru_cache(maxsize=256)

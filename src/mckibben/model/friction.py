@@ -19,12 +19,12 @@ from mckibben.model.point import Point
 
 __all__ = [
     "Crossing",
+    "after_step",
     "as_made",
     "crossing_density",
     "crossing_moment",
     "crossings",
     "incremental_density",
-    "moved",
     "pull",
     "slip_moment",
     "turn",
@@ -88,6 +88,6 @@ def pull(at: Point, p: Parameters, memory: Crossing) -> Number:
     return 2.0 * crossings(p) * crossing_moment(at, p, memory)
 
 
-def moved(at: Point, p: Parameters, memory: Crossing) -> Crossing:
+def after_step(at: Point, p: Parameters, memory: Crossing) -> Crossing:
     """What the crossings remember once they have been in a state."""
     return memory._replace(alpha=turn(at, p) - crossing_moment(at, p, memory) / p.friction.stiffness)

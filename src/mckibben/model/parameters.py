@@ -67,6 +67,11 @@ class Parameters(NamedTuple):
     stiffening: Any = None  #: `spec.Stiffening` of the fibres, None for the paper's quadratic energy
     friction: Any = None  #: `Rubbing` where crossings rub, None where they turn freely
 
+    @property
+    def endless(self) -> bool:
+        """Whether no length is too long: the fibres stretch, or the fittings give way."""
+        return self.EA is not None or self.compliance is not None
+
 
 def parameters(muscle: Muscle) -> Parameters:
     """Numbers of a muscle; differentiable with respect to every number of its specification."""

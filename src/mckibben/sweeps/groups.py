@@ -195,7 +195,7 @@ def _corners(step: Step, held: tuple[str, ...], knots: dict[str, np.ndarray], p:
 def surely_reached(p: Parameters, ends: str) -> np.ndarray:
     """A length [m] below full extension (theory page): that of a long muscle less what its two ends take."""
     fibre = p.H0 / np.sin(p.theta0)
-    if p.EA is not None or p.compliance is not None:
+    if p.endless:
         return np.full_like(fibre, np.inf)
     if ends == Ends.FREE:
         return np.asarray(fibre)

@@ -25,7 +25,8 @@ def region(limits: xr.Dataset) -> Figure:
     muscle = _muscle(limits)
     known, made = np.isfinite(longest), np.nan if muscle is None else style.shown(muscle.braid.length, "m")
     beyond = np.where(known, longest, ENDLESS * made)  # fibres that stretch set no limit
-    axes.fill_betweenx(pressure, shortest, beyond, color=style.SKY, alpha=0.25, lw=0, label="admissible and stable")
+    label = "admissible and stable" + ("" if known.any() else ", with no longest length")
+    axes.fill_betweenx(pressure, shortest, beyond, color=style.SKY, alpha=0.25, lw=0, label=label)
     axes.plot(shortest, pressure, "o-", ms=2.5, color=style.BLUE, label="shortest")
     stable = style.shown(limits["stable_down_to"].values, "m")
     if (shortest - stable > 1e-3).any():  # not where they are NaN
