@@ -116,8 +116,8 @@ def reproduce(
 ) -> None:
     """Run the tests of the paper, draw its figures, and sum up how the numbers compare.
 
-    A measured curve is a CSV file with the columns pressure (in bar) and value (force in N, or change of length over
-    length). No measured data come with this package.
+    A measured curve is a file as mckibben data check takes it: pressure and force (a, b), or pressure and length (c,
+    d). How far the model is from it is noted in the figure and printed. No measured data come with this package.
     """
     curves = dict(_pair(text) for text in measured or ())
     from mckibben.app.solving import solving
@@ -139,6 +139,8 @@ def reproduce(
     say(table(columns, rows, title="The paper's actuator", right=(2, 3, 4), whole=()))
     say("model: this package; Eq. (31): the formula without stored energy; stated: the values of docs/theory.md")
     say("assumed, not measured: " + ", ".join(made.muscle.assumed))
+    for name, points in made.measured.items():
+        say(f"{name}: {points.said}")
     for path in made.pictures:
         say(str(path))
 

@@ -65,7 +65,7 @@ class Comparison:
         if not count:
             return f"none of {self.outside} points within the curve's range"
         largest = float(self.differences[self.worst])
-        place = _shown(float(self.x[self.worst]), self.across)
+        place = _shown(float(self.x[self.worst]), self.across) + (" contraction" if self.across == "1" else "")
         of = f"the largest measured, {_shown(self.largest_measured, self.unit)}"
         return (
             f"rms {_shown(self.rms, self.unit)} ({self.percent(self.rms):.2g} % of {of}), largest difference "

@@ -11,7 +11,7 @@ import attrs
 import numpy as np
 
 from mckibben.data import branches, groups
-from mckibben.data.choose import choose
+from mckibben.data.choose import choose, column_named
 from mckibben.data.convert import Settings, converted, measured_kind
 from mckibben.data.numbers import decimal_mark
 from mckibben.data.quantities import KINDS, LABELS, QUANTITIES, remedy
@@ -147,7 +147,7 @@ def _one(
     names = [str(name) for name in columns.values()] + [by for by in (by,) if by]
     table = table_of(file, names, sheet, header)
     notes: list[str] = list(table.notes)
-    mark = settings["mark"] or decimal_mark(_numeric(table), table.source)
+    mark = settings["mark"] or decimal_mark(_numeric(table, columns), table.source)
     if by and by not in TOLD_APART:
         columns = dict(columns) | {"test": by}
     chosen, more = choose(table, columns, settings["units"], held, otherwise, mark)
@@ -180,10 +180,11 @@ def _one(
     )  # fmt: skip
 
 
-def _numeric(table: Table) -> list[Sequence[object]]:
-    """The columns whose heads name a quantity; all of them where none does."""
-    pairs = zip(table.heads, table.columns, strict=True)
-    return [cells for head, cells in pairs if set(head.readings) & set(QUANTITIES)] or list(table.columns)
+def _numeric(table: Table, columns: Mapping[str, Any]) -> list[Sequence[object]]:
+    """The columns that the user or their heads say to hold numbers that are read."""
+    said = {column_named(table, of, f"columns.{name}") for name, of in columns.items() if name in QUANTITIES}
+    read = {k for k, head in enumerate(table.heads) if set(head.readings) & set(QUANTITIES)}
+    return [table.columns[k] for k in sorted(said | read)]
 
 
 def _cells(table: Table, column: int, whole: np.ndarray) -> list[object]:

@@ -26,13 +26,16 @@ MOST = 300
 def draw(
     axes: Axes, x: np.ndarray, y: np.ndarray, branches: np.ndarray, colour: str = style.GREEN, name: str = ""
 ) -> None:
-    """Points in the units of the axes, each branch with a marker of its own where there are several."""
+    """Points in the units of the axes, each branch with a marker of its own where there are several.
+
+    They lie below the curve, which many of them would hide.
+    """
     there = [branch for branch in MARKERS if (branches == branch).any()]
     for branch in there:
         of = branches == branch
-        said = f"{name}, {branch}".lstrip(", ") if len(there) > 1 else name
+        said = f"{name}, {branch}" if name and len(there) > 1 else name
         axes.plot(x[of], y[of], linestyle="none", marker=MARKERS[branch], markersize=3.0, markerfacecolor="none",
-                  markeredgewidth=0.7, color=colour, label=said or "_points", zorder=3)  # fmt: skip
+                  markeredgewidth=0.7, color=colour, label=said or "_points", zorder=1.5)  # fmt: skip
 
 
 def overlay(figure: Figure, results: Mapping[str, Result], data: Data) -> Figure:
@@ -49,15 +52,19 @@ def overlay(figure: Figure, results: Mapping[str, Result], data: Data) -> Figure
         across, what, _ = axes_of(result)
         x, y = (_shown(values_of(picked, result, of), of) for of in (across, what))
         colour = style.LINES[k % len(style.LINES)] if len(results) > 1 else style.GREEN
-        draw(axes, x, y, picked.branches, colour, "measured" if len(results) == 1 else f"{name}, measured")
+        draw(axes, x, y, picked.branches, colour, "measured" if len(results) == 1 else "")
     if not found:
         assert trouble is not None
         raise trouble
-    if len(results) == 1 and axes.get_legend_handles_labels()[1][:1] != ["model"]:
+    if len(results) > 1:  # colours tell the curves apart, and markers the branches
+        kept = np.unique(np.concatenate([matching(results[name], data).branches for name in found]))
+        draw(axes, np.full(len(kept), np.nan), np.full(len(kept), np.nan), kept, style.GREY, "measured")
+    elif axes.get_legend_handles_labels()[1][:1] != ["model"]:
         axes.lines[0].set_label("model")
     axes.relim()
     axes.autoscale_view()
     style.tidy(axes, "best")
+    figure.set_figheight(figure.get_figheight() + 0.3 * len(found))
     for name, comparison in found.items():
         say(figure, f"{name}: model" if name else "Model", data, comparison)
     return figure
