@@ -1,6 +1,8 @@
 """Measured data as laboratories write them: what is in the file is what is read, and nothing is guessed in silence."""
 
+import contextlib
 import io
+import json
 import zipfile
 from pathlib import Path
 from typing import Any
@@ -210,6 +212,18 @@ def test_what_a_dialect_writes_is_read_back(
     assert data.rows.tolist() == list(range(2, 2 + len(numbers)))
 
 
+@settings(max_examples=200)
+@given(st.one_of(st.binary(max_size=60), st.text(st.sampled_from("1,.;\t\n\"'[]()-eEN pbarlmF%#x"), max_size=80)))
+def test_whatever_a_file_holds_it_is_read_or_refused(
+    tmp_path_factory: pytest.TempPathFactory, content: bytes | str
+) -> None:
+    heads = "" if isinstance(content, bytes) else "p [bar],l [mm],F [N]\n1,2,3\n"
+    path = tmp_path_factory.mktemp("any") / "x.csv"
+    path.write_bytes(content if isinstance(content, bytes) else (heads + content).encode())
+    with contextlib.suppress(mk.SpecError):
+        assert len(mk.read_data(path)) > 0
+
+
 @given(st.lists(st.floats(allow_nan=False, allow_infinity=False, width=64), min_size=1, max_size=8))
 def test_every_digit_counts(values: list[float]) -> None:
     for texts in ([repr(x) for x in values], [repr(x).replace(".", ",") for x in values]):
@@ -363,6 +377,18 @@ def test_a_staircase_of_pressures_is_one_test() -> None:
     assert data.branches[-1] == "unloading"
 
 
+def test_readings_of_a_sensor_are_one_level(tmp_path: Path) -> None:
+    table = {"pressure [bar]": [1 + 0.001 * (k % 3) for k in range(30)], "length [mm]": range(80, 110)}
+    data = mk.read_data(table | {"force [N]": range(30)})
+    assert data.tests == ("1 bar",)
+    near = {"pressure [bar]": [4.9] * 10 + [5.0] * 10, "length [mm]": [*range(10)] * 2, "force [N]": range(20)}
+    assert mk.read_data(near).tests == ("4.9 bar", "5 bar")
+    both = mk.read_data([pd.DataFrame(near)] * 2)
+    assert len(set(both.tests)) == 4
+    few = mk.read_data({"p [bar]": [1, 1, 2, 2], "l [mm]": [80, 90, 80, 90], "F [N]": [0, 1, 2, 3]})
+    assert any("taken as one" in note for note in few.assumptions)
+
+
 def test_files_are_tests_of_their_own(tmp_path: Path) -> None:
     text = "Extension [mm],Load [N]\n0,0\n1,2\n2,5\n"
     files = [written(tmp_path, text, f"{k} bars.csv") for k in (3, 4)]
@@ -432,6 +458,10 @@ WRONG = {
         PLAIN + "1,5,80,0,2\n",
         r"bench.csv, line 5: has 5 cells, the heads \(line 1\) are 3; numbers with decimal commas",
     ),
+    "a strain": (
+        PLAIN.replace("length [mm]", "Strain [%]"),
+        r'no column of length, .*columns=\{"contraction": "Strain \[%\]"\} .* with reverse=',
+    ),
     "no whole row": ("p [bar],l [mm],F [N]\n1,,2\n1,,3\n", "no row has a number in every column"),
     "a doubtful comma": (
         "p [bar];l [mm];F [N]\n1;80;1,234\n",
@@ -495,7 +525,7 @@ def test_a_header_line_may_be_told(tmp_path: Path) -> None:
     text = "force,count\n7,8\n9,10\n" + PLAIN
     with pytest.raises(mk.SpecError):
         mk.read_data(written(tmp_path, text))
-    same(mk.read_data(written(tmp_path, text), header=4))
+    same(mk.read_data(written(tmp_path, text), header=4, columns={"force": "3"}))
 
 
 def test_a_dataset_never_changes_and_is_compared_by_value() -> None:
@@ -645,3 +675,42 @@ def test_a_sample_is_read_from_a_folder(tmp_path: Path) -> None:
     assert data.tests == ("3 bars", "6 bars")
     np.testing.assert_allclose(data["6 bars"].length, [0.624, 0.625, 0.626, 0.627, 0.628])
     assert "MIT" in data.assumptions[0]
+
+
+def invoke(*words: object) -> Any:
+    from typer.testing import CliRunner
+
+    from mckibben.app.cli import app
+
+    return CliRunner().invoke(app, [str(word) for word in words], env={"COLUMNS": "120"})
+
+
+def test_the_command_shows_what_was_understood(tmp_path: Path) -> None:
+    path = written(tmp_path, "p;Weg (mm);Kraft\n1,0;80;0\n1,0;90;1,5\n1,0;80;0,2\n")
+    options = ("--column", "length=Weg", "--unit", "pressure=bar", "--unit", "force=kg")
+    done = invoke("data", "check", path, *options)
+    assert done.exit_code == 0, done.stderr
+    for words in ("bench.csv", "1 bar", "2 loading, 1 unloading", "80 to 90 mm", "0 to 14.71 N", "taken as gauge"):
+        assert words in done.stdout
+    told = json.loads(invoke("data", "check", path, *options, "--absolute", "--atmosphere", "1 bar", "--json").stdout)
+    assert told["measured"] == "length"
+    assert told["tests"][0]["pressure"] == [0.0, 0.0]
+    refused = invoke("data", "check", path, "--json")
+    assert refused.exit_code == 2
+    assert json.loads(refused.stdout)["error"]["field"] == "bench.csv, line 1"
+    assert refused.stderr.count("\n") == 1
+    assert "NAME=VALUE" in invoke("data", "check", path, "--unit", "kg").stderr
+
+
+def test_the_command_draws_points_over_a_saved_curve(curves: dict[str, Any], tmp_path: Path) -> None:
+    result = curves["isobaric"]
+    mk.save(result, tmp_path / "out.nc")
+    bench(result, 2.0, 0.12).to_pandas().drop(columns=["row"]).to_csv(tmp_path / "bench.csv", index=False)
+    done = invoke("plot", tmp_path / "out.nc", "--data", tmp_path / "bench.csv")
+    assert done.exit_code == 0, done.stderr
+    assert "model less measured: rms 2 N (" in done.stdout
+    assert "2 of 42 points outside" in done.stdout
+    assert (tmp_path / "out.png").read_bytes().startswith(b"\x89PNG")
+    other = invoke("plot", tmp_path / "out.nc", "--force", "--data", tmp_path / "bench.csv", "--held", "pressure=2 bar")
+    assert other.exit_code == 2
+    assert "no point has the pressure of the curve" in other.stderr

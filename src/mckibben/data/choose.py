@@ -46,6 +46,8 @@ def column_named(table: Table, wanted: Any, field: str) -> int:
         if texts.count(said) > 1:
             places = ", ".join(str(k + 1) for k, text in enumerate(texts) if text == said)
             raise SpecError(field, wanted, f"is the head of several columns of {table.source}: {places}", "say which")
+    if said.isdigit():  # a number, as the command line gives it
+        return column_named(table, int(said), field)
     advice = nearest(str(wanted), [head.text for head in table.heads])
     raise SpecError(field, wanted, f"is no column of {table.source}", advice)
 
@@ -130,8 +132,12 @@ def _check_missing(table: Table, chosen: Mapping[str, int], held: Collection[str
         what = names[0] if len(names) == 1 else "length, contraction or extension"
         example = {"pressure": "3 bar", "force": "0 N", "length": "115 mm"}[names[0]]
         near = next((head.text for head in table.heads if _could_be(head, names)), "...")
-        held_as = remedy("held", names[0], example)
-        advice = f"say {remedy('columns', names[0], near)}, or {held_as} if it was held"
+        advice = f"say {remedy('columns', names[0], near)}, or {remedy('held', names[0], example)} if it was held"
+        strain = next((head.text for head in table.heads if "strain" in head.words), None)
+        if strain and names == KINDS:
+            advice = (
+                f'say {remedy("columns", "contraction", strain)}, with reverse=["contraction"] if it grows with length'
+            )
         raise SpecError(_heads(table), allowed=f"has no column of {what} among {table.shown}", advice=advice)
 
 

@@ -11,6 +11,7 @@ from mckibben.data.heads import unit_of
 from mckibben.data.numbers import numbers
 from mckibben.data.quantities import KINDS, QUANTITIES, remedy
 from mckibben.data.table import Table
+from mckibben.data.text import NUMERIC
 from mckibben.spec.errors import SpecError
 from mckibben.units import DISPLAY, UnitError, is_unit, scaled, show
 
@@ -53,7 +54,7 @@ def _in_si(table: Table, name: str, column: int, settings: Settings, notes: list
     if wrong is not None:
         cell = table.columns[column][wrong]
         advice = "correct it, or leave the cell empty" if table.counted == "line" else "correct it, or empty the cell"
-        if isinstance(cell, str) and any(mark in cell for mark in ",."):
+        if isinstance(cell, str) and NUMERIC.fullmatch(cell.strip()):
             advice = f'its decimal mark was taken to be "{settings["mark"]}": else say decimal= (--decimal)'
         raise SpecError(table.place(wrong, column), cell, "must be a number", advice)
     head, wanted = table.heads[column], QUANTITIES[name].unit

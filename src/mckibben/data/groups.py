@@ -28,15 +28,13 @@ def by_label(cells: Sequence[object]) -> tuple[tuple[str, ...], np.ndarray]:
     return names, np.array([place[name] for name in said], int)
 
 
-def levels(values: np.ndarray, fewest: int = _FEWEST) -> np.ndarray | None:
+def levels(values: np.ndarray, nominal: bool, fewest: int = _FEWEST) -> np.ndarray | None:
     """Which level each value is of, or None where they are not a few levels that stand apart.
 
-    Levels are what is left between gaps of the sorted values: nominal ones are equal, measured ones as wide as noise.
+    Levels are what is left between gaps of the sorted values: `nominal` ones are equal, measured ones as wide as noise.
     """
     order = np.argsort(values, kind="stable")
     gaps, width = np.diff(values[order]), _SAME * np.max(np.abs(values))
-    distinct = 1 + np.count_nonzero(gaps)
-    nominal = distinct * fewest <= len(values) and distinct <= _MOST
     which = np.empty(len(values), int)
     which[order] = np.concatenate([[0], np.cumsum(gaps > (0.0 if nominal else width))])
     counts = np.bincount(which)
@@ -58,9 +56,11 @@ def by_level(
     for what, values, other, kind in (("pressure", pressure, shape, "Pa"), ("length", shape, pressure, unit)):
         if values is None or not len(values):
             continue
-        which = levels(values, 1 if asked else _FEWEST)
-        if which is not None and (asked or not which.any() or _stays(which, other)):
-            found.append((np.count_nonzero(np.diff(which)), what, values, kind, which))
+        for nominal in (True, False):
+            which = levels(values, nominal, 1 if asked and not nominal else _FEWEST)
+            if which is not None and (asked or not which.any() or _stays(which, other)):
+                found.append((np.count_nonzero(np.diff(which)), what, values, kind, which))
+                break
     if not found:
         return None
     _, what, values, kind, which = min(found, key=lambda item: item[0])

@@ -213,6 +213,8 @@ def _tests(
             names, which, what = grouped
             if len(names) > 1:
                 note = f"tests: told apart by {what}, which takes {len(names)} values"
+        elif "test" not in cells and "pressure" in found and shape is not None:
+            note = "tests: taken as one, as neither pressure nor length stays the same for several rows on end"
     if several and "test" not in cells:
         names = (stem,) if len(names) == 1 else tuple(f"{stem}, {name}" for name in names)
     return names, which, note
@@ -251,6 +253,11 @@ def _branches(
     return found
 
 
+def _numbered(names: Sequence[str]) -> list[str]:
+    """Names of which those that come again have a number."""
+    return [f"{name} ({names[:k].count(name) + 1})" if name in names[:k] else name for k, name in enumerate(names)]
+
+
 def _joined(parts: Sequence[Data]) -> Data:
     """The data of several files as one; equal names of tests are told apart by their files."""
     first = parts[0]
@@ -263,7 +270,7 @@ def _joined(parts: Sequence[Data]) -> Data:
     names = [name for part in parts for name in part.tests]
     if len(set(names)) < len(names):
         parts = [attrs.evolve(p, tests=tuple(f"{Path(p.source).stem}, {name}" for name in p.tests)) for p in parts]
-        names = [name for part in parts for name in part.tests]
+        names = _numbered([name for part in parts for name in part.tests])
     starts = np.cumsum([0, *(len(part.tests) for part in parts)])
 
     def whole(name: str) -> Any:

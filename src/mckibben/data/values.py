@@ -80,7 +80,8 @@ class Data:
         names = ", ".join(self.tests[:6]) + (", ..." if len(self.tests) > 6 else "")
         count = f"{len(self.tests)} test{'s' if len(self.tests) != 1 else ''}"
         forces = f"{self.force.min():.4g} to {self.force.max():.4g} N" if len(self) else "none"
-        return f"<Data: {len(self)} points of {count} ({names}), {self.measured} measured, force {forces}>"
+        points = f"{len(self)} point{'s' if len(self) != 1 else ''}"
+        return f"<Data: {points} of {count} ({names}), {self.measured} measured, force {forces}>"
 
     def __eq__(self, other: object) -> bool:
         if not isinstance(other, Data):
