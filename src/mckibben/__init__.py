@@ -25,6 +25,8 @@ _PUBLIC = {
     "mckibben.experiments.effects": ("effects",),
     "mckibben.results.effects": ("Effects",),
     "mckibben.results.sensitivity": ("Sensitivity",),
+    "mckibben.fitting.fit": ("fit",),
+    "mckibben.fitting.answer": ("Fit",),
     "mckibben.view.plot": ("plot",),
     "mckibben.results.result": ("Result", "State"),
     "mckibben.data.read": ("read_data",),

@@ -1,0 +1,1 @@
+"""From measured data to the muscle: fits, how sure they are, and which effects they need."""

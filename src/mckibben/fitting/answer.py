@@ -1,0 +1,129 @@
+"""`Fit`: the answer of a fit, which predicts tests, and how it is made."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import attrs
+import numpy as np
+
+from mckibben.experiments.run import run
+from mckibben.fitting.free import Free, put_in
+from mckibben.fitting.misfit import Measured, Misfit
+from mckibben.fitting.search import Least
+from mckibben.fitting.uncertain import Spread
+from mckibben.measure.report import versions
+from mckibben.results.fit import NUMBERS, POINTS, Fitted
+from mckibben.results.result import Result
+from mckibben.spec import Test
+from mckibben.spec.text import to_toml
+
+__all__ = ["Fit", "Prediction", "answer"]
+
+
+@attrs.frozen(eq=False)
+class Prediction:
+    """A test of the fitted muscle, and how sure its force is."""
+
+    curve: Result
+    error: np.ndarray  #: standard error of the force [N] at each state, from that of the fitted numbers; NaN if none
+
+    @property
+    def low(self) -> np.ndarray:
+        """Force less two standard errors [N]."""
+        return np.asarray(self.curve.force - 2.0 * self.error)
+
+    @property
+    def high(self) -> np.ndarray:
+        """Force and two standard errors [N]."""
+        return np.asarray(self.curve.force + 2.0 * self.error)
+
+
+@attrs.frozen(eq=False, repr=False)
+class Fit(Fitted):
+    """What `fit` gives: a `Fitted` that predicts."""
+
+    def predict(self, test: Test, *, tolerance: float = 1e-6) -> Prediction:
+        """A test of the fitted muscle with the standard error of its force.
+
+        Args:
+            test: any test that `run` takes.
+            tolerance: as for `run`.
+
+        Returns:
+            The curve, and the standard error [N] that the fitted numbers leave at each state's length and pressure. The
+            scatter of a single measurement (`data.attrs["force_error"]`) comes on top.
+
+        >>> muscle, test = mk.presets.paper(), mk.Isobaric(length="85 mm to 110 mm", pressure="1 bar", points=6)
+        >>> curve = mk.run(muscle, test)
+        >>> table = {"length [m]": curve.length, "pressure [Pa]": curve.pressure, "force [N]": curve.force}
+        >>> found = mk.fit(muscle, mk.read_data(table), {"braid.angle": "35 deg to 39 deg"}, starts=1)
+        >>> float(found.predict(test).error.max()) < 0.01  # N: nothing was wrong with these data
+        True
+        """
+        curve = run(self.muscle, test, tolerance=tolerance)
+        own = [k for k, name in enumerate(self.numbers) if not name.startswith("offset.")]
+        free = tuple(self._free(k) for k in own)
+        points = np.stack([curve.length, curve.pressure], axis=1)
+        error = np.full(len(points), np.nan)
+        good = np.isfinite(points).all(axis=1) & np.isfinite(curve.force)
+        if good.any():
+            count = int(good.sum())
+            there = Measured(points[good], np.zeros(count), np.full(count, "curve"), np.full(count, ""), np.ones(count))
+            misfit = Misfit(self.muscle, free, there, int(self.data.attrs["unknowns"]))
+            x = misfit.start
+            slopes = misfit(x).slopes / np.array([one.slope(float(at)) for one, at in zip(free, x, strict=True)])
+            covariance = self.data["covariance"].values[np.ix_(own, own)]
+            with np.errstate(invalid="ignore"):
+                error[good] = np.sqrt(np.einsum("nk,kl,nl->n", slopes, covariance, slopes))
+        return Prediction(curve, error)
+
+    def _free(self, k: int) -> Free:
+        row = {name: float(self.data[name].values[k]) for name in NUMBERS}
+        unit = str(self.data["unit"].values[k])
+        return Free(self.numbers[k], unit, row["from"], row["to"], row["value"])
+
+
+def answer(
+    misfit: Misfit, best: Least, spread: Spread, ends: tuple[np.ndarray, np.ndarray], about: dict[str, Any]
+) -> Fit:
+    """The answer from where a search ended, with the ends of the intervals in x."""
+    import xarray as xr
+
+    free, values = misfit.free, misfit.values(best.x)
+    names = [one.name for one in free]
+    slopes = np.array([one.slope(float(x)) for one, x in zip(free, best.x, strict=True)])
+    numbers = {
+        "value": values, "error": spread.errors * slopes, "low": misfit.values(ends[0]),
+        "high": misfit.values(ends[1]), "from": np.array([one.low for one in free]),
+        "to": np.array([one.high for one in free]), "start": np.array([one.start for one in free]),
+    }  # fmt: skip
+    measured = misfit.measured
+    points = {
+        "length": measured.points[:, 0], "pressure": measured.points[:, 1], "force": measured.force,
+        "predicted": misfit(best.x).force, "weight": measured.weights,
+    }  # fmt: skip
+    variables: dict[str, Any] = {
+        name: ("number", column, {"long_name": NUMBERS[name]}) for name, column in numbers.items()
+    }
+    variables |= {name: ("point", column, dict(zip(("units", "long_name"), POINTS[name], strict=True)))
+                  for name, column in points.items()}  # fmt: skip
+    square = ("number", "other")
+    variables |= {
+        "correlation": (square, spread.correlation),
+        "covariance": (square, spread.covariance * np.outer(slopes, slopes)),
+        "undetermined": ("number", spread.undetermined),
+        "unit": ("number", [one.unit or "1" for one in free]),
+        "display": ("number", [one.display or one.unit or "1" for one in free]),
+        "meaning": ("number", [one.meaning for one in free]),
+        "test": ("point", measured.tests), "branch": ("point", measured.branches),
+    }  # fmt: skip
+    muscle = put_in(misfit.muscle, free, values)
+    attributes = about | {
+        "muscle": to_toml(muscle, allow_custom=True), "given": to_toml(misfit.muscle, allow_custom=True),
+        "mckibben_version": versions()["mckibben"],
+    }  # fmt: skip
+    dataset = xr.Dataset(variables, {"number": names, "other": names}, attributes)
+    for name in dataset.variables:
+        dataset[name].values.flags.writeable = False
+    return Fit(muscle, misfit.muscle, dataset)

@@ -1,0 +1,217 @@
+"""`fit()`: the muscle behind measured forces."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from typing import Any
+
+import numpy as np
+
+from mckibben.data.values import Data
+from mckibben.experiments.foresee import refuse_friction
+from mckibben.fitting.answer import Fit, answer
+from mckibben.fitting.free import free_numbers, offsets_of
+from mckibben.fitting.misfit import Measured, Misfit
+from mckibben.fitting.notes import notes_on
+from mckibben.fitting.search import LOSSES, Least, candidates, cost_of, least
+from mckibben.fitting.uncertain import Spread, profile, spread_of
+from mckibben.measure.survey import errors
+from mckibben.spec import Muscle, SpecError
+from mckibben.spec.errors import nearest
+from mckibben.units import UnitError, show, to_si
+
+__all__ = ["fit"]
+
+PASSES = 4
+"""How often at most the size of an error is taken anew from the residuals, where something else depends on it."""
+SIZES = (24, 48, 96)
+"""Unknowns, tried in turn until the error of the best muscle's forces is below the tolerance."""
+SETTLED = 0.01
+"""Relative change of that size at which it is left alone."""
+
+
+def fit(
+    muscle: Muscle,
+    data: Data | Sequence[Data],
+    free: Mapping[str, Any],
+    *,
+    priors: Mapping[str, Any] | None = None,
+    offsets: Mapping[str, Any] | None = None,
+    weights: Mapping[str, float] | None = None,
+    loss: str = "linear",
+    force_error: Any = None,
+    starts: int = 8,
+    level: float = 0.95,
+    profiles: bool = False,
+    tolerance: float = 1e-4,
+    watch: Callable[[int], None] | None = None,
+) -> Fit:
+    """Find numbers of a muscle so that its forces differ least from measured ones.
+
+    The sum of squares of the differences, over the size of an error, is made least within the bounds by SciPy's
+    `least_squares`, with exact derivatives. What the data cannot tell is said instead of a number.
+
+    Args:
+        muscle: what is known; the numbers that are free start from its own where these are inside the bounds.
+        data: what `read_data` gave, one or several. Forces are compared at the measured lengths and pressures.
+        free: names of numbers of the muscle and their ranges, {"chamber.law.c1": "1 kPa to 1 MPa"}.
+        priors: what is known of a free number beforehand, mean and standard deviation: {"braid.angle": "37 deg +- 1
+            deg"}.
+        offsets: instruments that may be off, with the standard deviation expected of each: {"force": "2 N",
+            "pressure": "0.05 bar", "length": "1 mm"}. One value of each for all tests.
+        weights: of tests by name, 1 by default; 0 leaves a test out.
+        loss: "linear" (least squares), or one for which points far off count less: "soft_l1", "huber", "cauchy".
+        force_error: standard deviation of a measured force [N]; by default it is taken from the residuals.
+        starts: how many points of the range are looked at to begin from; the best one is.
+        level: of the intervals.
+        profiles: intervals by the profile likelihood, which follows a curved valley, in place of the standard errors.
+        tolerance: relative error of the computed forces.
+        watch: called with the number of muscles tried.
+
+    Returns:
+        A `Fit`: `muscle`, `table`, `intervals`, `correlation`, `notes`, `predict(test)`.
+
+    Raises:
+        SpecError: for names, ranges or data that cannot be, and where no muscle within the bounds reaches every point.
+
+    >>> muscle = mk.presets.paper()
+    >>> curve = mk.run(muscle, mk.Isobaric(length="85 mm to 110 mm", pressure="1 bar", points=6))
+    >>> data = mk.read_data({"length [m]": curve.length, "pressure [Pa]": curve.pressure, "force [N]": curve.force})
+    >>> found = mk.fit(muscle.replace("braid.angle", "36 deg"), data, {"braid.angle": "35 deg to 39 deg"}, starts=1)
+    >>> print(found.table.loc["braid.angle", "value"])
+    37 deg
+    """
+    refuse_friction(muscle, "fit")
+    several = _several(data)
+    known = _known(force_error)
+    if loss not in LOSSES:
+        raise SpecError("loss", loss, "must be one of " + ", ".join(LOSSES), nearest(str(loss), LOSSES))
+    if not 0.5 <= level < 1.0:
+        raise SpecError("level", level, "must be at least 0.5 and below 1", "0.95 is usual")
+    numbers = (*free_numbers(muscle, free, priors or {}), *offsets_of(offsets or {}))
+    measured = _measured(muscle, several, weights or {})
+    if len(measured.force) + sum(one.prior is not None for one in numbers) <= len(numbers):
+        said = f"has {len(measured.force)} points for {len(numbers)} free numbers"
+        raise SpecError("data", allowed=said, advice="free fewer numbers, or measure more")
+    misfit = Misfit(muscle, numbers, measured, SIZES[0])
+    best, sigma = _best(misfit, known, loss, starts, tolerance, watch or (lambda count: None))
+    spread = spread_of(best, known is not None)
+    low, high = _intervals(misfit, best, spread, sigma, loss, level, profiles)
+    about = {
+        "level": level, "intervals": "profile likelihood" if profiles else "standard errors", "loss": loss,
+        "force_error": float(sigma * np.sqrt(spread.scale)), "message": best.message,
+        "converged": int(best.converged), "evaluations": best.evaluations, "unknowns": misfit.size,
+        "source": ", ".join(one.source for one in several),
+        "notes": "\n".join([*notes_on(misfit, best, spread), *(line for one in several for line in one.assumptions)]),
+    }  # fmt: skip
+    return answer(misfit, best, spread, (low, high), about)
+
+
+def _several(data: Data | Sequence[Data]) -> tuple[Data, ...]:
+    several = (data,) if isinstance(data, Data) else tuple(data)
+    if not several or not all(isinstance(one, Data) for one in several):
+        raise SpecError("data", data, "must be what read_data gave", 'such as mk.read_data("bench.csv")')
+    if sum(len(one) for one in several) == 0:
+        raise SpecError("data", allowed="holds no points")
+    return several
+
+
+def _known(force_error: Any) -> float | None:
+    if force_error is None:
+        return None
+    try:
+        size = float(to_si(force_error, "N"))
+    except UnitError as error:
+        raise SpecError("force_error", force_error, str(error), error.advice) from error
+    if size <= 0.0:
+        raise SpecError("force_error", force_error, "must be above 0 N")
+    return size
+
+
+def _measured(muscle: Muscle, several: tuple[Data, ...], weights: Mapping[str, float]) -> Measured:
+    """The points to fit, with their weights; a test of weight 0 is left out."""
+    tests = dict.fromkeys(name for data in several for name in data.tests)
+    for name, weight in weights.items():
+        if name not in tests:
+            raise SpecError(f"weights.{name}", allowed="is no test of these data", advice=nearest(str(name), tests))
+        if not 0.0 <= float(weight) < 1e12:
+            raise SpecError(f"weights.{name}", weight, "must be at least 0")
+    measured = Measured.of(muscle, several, weights)
+    return measured.some(measured.weights > 0.0)
+
+
+def _best(
+    misfit: Misfit, known: float | None, loss: str, starts: int, tolerance: float, watch: Callable[[int], None]
+) -> tuple[Least, float]:
+    """The end of the search, and the size of an error that it was done with [N]."""
+    count = 0
+
+    def tell(_: int) -> None:
+        nonlocal count
+        count += 1
+        watch(count)
+
+    x = _start(misfit, known or 1.0, starts, tell)
+    needs_size = known is None and (loss != "linear" or any(one.prior is not None for one in misfit.free))
+    sigma = known or (_size(misfit, x) if needs_size else 1.0)
+    for _ in range(PASSES):
+        found = least(misfit, x, sigma, loss, watch=tell)
+        x = found.x
+        if misfit.size < SIZES[-1] and _error(misfit, x) > tolerance:
+            misfit.place_anew(x, SIZES[SIZES.index(misfit.size) + 1])
+            continue
+        size = _size(misfit, x)
+        if not needs_size or abs(size / sigma - 1.0) < SETTLED:
+            break
+        sigma = size
+    return found, sigma
+
+
+def _start(misfit: Misfit, sigma: float, count: int, watch: Callable[[int], None]) -> np.ndarray:
+    """The best of several points of the range. SpecError where none has a state at every measured point."""
+    ranked: list[tuple[int, float, int, np.ndarray]] = []
+    for x in candidates(misfit, count):
+        missing, cost = cost_of(misfit, x, sigma)
+        watch(0)
+        ranked.append((missing, cost, len(ranked), x))
+    missing, _, _, x = min(ranked)
+    if missing:
+        lost = np.flatnonzero(~misfit(x).found)
+        lengths, pressures = misfit.measured.points[lost].T
+        said = (
+            f"{missing} of {len(misfit.measured.force)} points are beyond reach of all {len(ranked)} muscles tried, "
+            f"such as {show(float(lengths[0]), 'mm')} at {show(float(pressures[0]), 'bar')}"
+        )
+        raise SpecError("data", allowed=said, advice="widen the ranges, or leave these points out with data.where()")
+    misfit.place_anew(x)
+    return x
+
+
+def _error(misfit: Misfit, x: np.ndarray) -> float:
+    """Estimated relative error of the forces at x."""
+    misfit(x)
+    problem, near = misfit.problem_at(x), misfit.near
+    return 0.0 if near is None else float(errors(problem, near.u, near.loads).max())
+
+
+def _size(misfit: Misfit, x: np.ndarray) -> float:
+    """Size of the residuals [N], little moved by a few that are far off."""
+    measured = misfit.measured
+    residuals = np.sqrt(measured.weights) * (misfit(x).force - measured.force)
+    n, k = len(residuals), len(misfit.free)
+    size = 1.4826 * float(np.median(np.abs(residuals))) * np.sqrt(n / max(n - k, 1))
+    return float(max(size, 1e-9 * np.abs(measured.force).max(), 1e-12))
+
+
+def _intervals(
+    misfit: Misfit, best: Least, spread: Spread, sigma: float, loss: str, level: float, profiles: bool
+) -> tuple[np.ndarray, np.ndarray]:
+    """Lower and upper ends in x, by standard errors or by profiles."""
+    from scipy.stats import t
+
+    distance = float(t.ppf(0.5 + 0.5 * level, max(len(best.residuals) - len(best.x), 1)))
+    if profiles:
+        ends = [profile(misfit, best, spread, k, sigma, loss, distance) for k in range(len(best.x))]
+        return np.array([low for low, _ in ends]), np.array([high for _, high in ends])
+    reach = distance * np.where(np.isfinite(spread.errors), spread.errors, 1.0)
+    return np.clip(best.x - reach, 0.0, 1.0), np.clip(best.x + reach, 0.0, 1.0)

@@ -1,0 +1,179 @@
+"""What a muscle's forces differ from the measured ones by, and how that changes with the free numbers.
+
+The search asks for it at points x between 0 and 1 for each number. States are followed from those of the last muscle;
+where that fails they are sought anew, and a muscle that has none at some point gives NaN there, from which a search
+takes a smaller step.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any
+
+import attrs
+import numpy as np
+
+from mckibben.data.values import Data
+from mckibben.fitting.forces import in_blocks
+from mckibben.fitting.free import Free, put_in
+from mckibben.fitting.states import fitting_problem, ordered, seek
+from mckibben.model.extension import longest_of
+from mckibben.model.parameters import parameters
+from mckibben.solver.problem import Problem
+from mckibben.solver.system import Unknowns
+from mckibben.spec import Muscle, SpecError
+from mckibben.spec.declared import evolved, numbers
+
+__all__ = ["Measured", "Misfit", "Seen"]
+
+
+@attrs.frozen(eq=False)
+class Measured:
+    """What is fitted: n points."""
+
+    points: np.ndarray  #: length [m] and pressure [Pa] (n, 2)
+    force: np.ndarray  #: (n) N
+    tests: np.ndarray  #: (n) names of their tests
+    branches: np.ndarray  #: (n) "loading", "unloading" or "unknown"
+    weights: np.ndarray  #: (n)
+
+    @classmethod
+    def of(cls, muscle: Muscle, several: tuple[Data, ...], weights: Mapping[str, float]) -> Measured:
+        """Points of several sets of data, with weights by the names of tests, 1 where none is given."""
+        parts = [
+            (
+                np.stack([data.lengths(muscle), data.pressure], axis=1),
+                data.force,
+                np.array([data.tests[k] for k in data.which]),
+                data.branches.astype(str),
+            )
+            for data in several
+        ]
+        points, force, tests, branches = (np.concatenate(column) for column in zip(*parts, strict=True))
+        return cls(points, force, tests, branches, np.array([float(weights.get(name, 1.0)) for name in tests.tolist()]))
+
+    def some(self, chosen: np.ndarray) -> Measured:
+        """Some of the points."""
+        return Measured(*(getattr(self, field.name)[chosen] for field in attrs.fields(Measured)))
+
+
+@attrs.frozen(eq=False)
+class Seen:
+    """At one x: forces of the model at the measured points, as an instrument shows them, and derivatives by x."""
+
+    force: np.ndarray  #: (n)
+    slopes: np.ndarray  #: (n, k)
+
+    @property
+    def found(self) -> np.ndarray:
+        """Which points have a state."""
+        return np.isfinite(self.force)
+
+
+@attrs.define(eq=False)
+class Misfit:
+    """The model at measured points, for a search; it remembers the last states, and nothing that changes an answer."""
+
+    muscle: Muscle
+    free: tuple[Free, ...]
+    measured: Measured
+    size: int
+    orders: tuple[np.ndarray, ...] = attrs.field(init=False)
+    places: tuple[int, ...] = attrs.field(init=False)
+    problem: Problem | None = attrs.field(init=False, default=None)
+    near: Unknowns | None = attrs.field(init=False, default=None)
+    last: tuple[bytes, Seen] | None = attrs.field(init=False, default=None)
+
+    def __attrs_post_init__(self) -> None:
+        self.orders = ordered(self.measured.points, self.measured.tests)
+        leaves = [name for name, _, _ in numbers(self.muscle)]
+        self.places = tuple(leaves.index(one.name) for one in self.free if one.name in leaves)
+
+    @property
+    def start(self) -> np.ndarray:
+        """x of the muscle as given."""
+        return np.array([one.x(one.start) for one in self.free])
+
+    def values(self, x: np.ndarray) -> np.ndarray:
+        """The numbers at x, SI."""
+        return np.array([one.value(float(at)) for one, at in zip(self.free, x, strict=True)])
+
+    def offset(self, values: np.ndarray, name: str) -> float:
+        """What an instrument is off by."""
+        return next((float(v) for one, v in zip(self.free, values, strict=True) if one.name == f"offset.{name}"), 0.0)
+
+    def place_anew(self, x: np.ndarray, size: int | None = None) -> Problem:
+        """Place the points for the muscle at x, on more unknowns if a size is given, and seek its states thoroughly."""
+        self.size = size or self.size
+        muscle, points = self._at(x)
+        self.problem, longest = fitting_problem(muscle, points, self.size)
+        states = seek(self.problem, longest, points, self.orders, thorough=True)
+        self.near = states if np.isfinite(states.loads).all() else None
+        self.last = None
+        return self.problem
+
+    def problem_at(self, x: np.ndarray) -> Problem:
+        """The muscle at x on the present unknowns."""
+        placed = self.problem or self.place_anew(x)
+        return Problem.of(placed.basis, parameters(self._at(x)[0]), placed.b)
+
+    def __call__(self, x: np.ndarray) -> Seen:
+        """Forces and derivatives at x."""
+        key = np.asarray(x, float).tobytes()
+        if self.last is not None and self.last[0] == key:
+            return self.last[1]
+        try:
+            seen = self._seen(np.asarray(x, float))
+        except SpecError:  # numbers that do not go together, such as fibres that do not fit
+            seen = self._nothing()
+        self.last = (key, seen)
+        return seen
+
+    def _nothing(self) -> Seen:
+        n, k = len(self.measured.force), len(self.free)
+        return Seen(np.full(n, np.nan), np.full((n, k), np.nan))
+
+    def _at(self, x: np.ndarray) -> tuple[Muscle, np.ndarray]:
+        values = self.values(x)
+        shift = np.array([self.offset(values, "length"), self.offset(values, "pressure")])
+        return put_in(self.muscle, self.free, values), self.measured.points + shift
+
+    def _seen(self, x: np.ndarray) -> Seen:
+        muscle, points = self._at(x)
+        if self.problem is None:
+            self.problem = fitting_problem(muscle, points, self.size)[0]
+        p, problem = parameters(muscle), self.problem
+        longest = longest_of(p, problem.basis.ends)
+        inside = points[:, 0] < longest
+        if self.near is not None and inside.all():
+            force, slopes, states, good = self._forces(x, self.near)
+            if good.all():
+                self.near = states
+                return Seen(force, slopes)
+        states = seek(self.problem_at(x), longest, points, self.orders)
+        found = np.isfinite(states.loads).all(axis=1)
+        if not found.any():
+            return self._nothing()
+        filler = int(np.flatnonzero(found)[0])
+        rows = np.where(found, np.arange(len(found)), filler)
+        force, slopes, states, good = self._forces(x, Unknowns(states.u[rows], states.loads[rows]), rows)
+        missing = ~(found & good)
+        if not missing.any():
+            self.near = states
+        force[missing], slopes[missing] = np.nan, np.nan
+        return Seen(force, slopes)
+
+    def _forces(self, x: np.ndarray, near: Unknowns, rows: Any = slice(None)) -> tuple[Any, ...]:
+        values, points = self.values(x), self.measured.points[rows]
+        n, problem = len(points), self.problem
+        assert problem is not None
+        shift = [self.offset(values, "length"), self.offset(values, "pressure")]
+        own = values[: len(self.places)]
+        plain = evolved(self.muscle, name=None, assumed=())
+        free = np.concatenate([own, shift])
+        found = in_blocks(problem.basis, self.places, problem.b, plain, free, points, near)
+        force, by = found.force + self.offset(values, "force"), found.slopes
+        columns = dict(zip((one.name for one in self.free[: len(own)]), by.T[: len(own)], strict=True))
+        columns |= {"offset.length": by[:, -2], "offset.pressure": by[:, -1], "offset.force": np.ones(n)}
+        scaled = [columns[one.name] * one.slope(float(at)) for one, at in zip(self.free, x, strict=True)]
+        return force, np.stack(scaled, axis=1), Unknowns(found.states.u, found.states.loads), found.good

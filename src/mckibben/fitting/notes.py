@@ -1,0 +1,54 @@
+"""What must be known of a fit before its numbers are used, a sentence each."""
+
+from __future__ import annotations
+
+from itertools import combinations
+
+import numpy as np
+
+from mckibben.fitting.misfit import Misfit
+from mckibben.fitting.search import Least
+from mckibben.fitting.uncertain import SHARE, Spread
+
+__all__ = ["notes_on"]
+
+CLOSE = 0.98
+"""Correlation from which on it is told."""
+AT = 1e-3
+"""Distance from a bound, over the range, at which a number counts as being there."""
+
+
+def notes_on(misfit: Misfit, best: Least, spread: Spread) -> list[str]:
+    """Sentences: what is open, what goes together, what is at a bound, what is not measured at all."""
+    names = [one.name for one in misfit.free]
+    notes = [] if best.converged else [f"the search was ended before it had settled: {best.message}"]
+    for direction in spread.directions:
+        members = [name for name, share in zip(names, direction, strict=True) if abs(share) > SHARE]
+        if len(members) == 1:
+            notes.append(f"the data say nothing of {members[0]} within its bounds: leave it out, or give a prior")
+        else:
+            together = " and ".join([", ".join(members[:-1]), members[-1]])
+            notes.append(f"the data determine only a combination of {together}: free fewer of them, or give a prior")
+    lost = spread.undetermined
+    for (i, first), (j, second) in combinations(enumerate(names), 2):
+        by = spread.correlation[i, j]
+        if abs(by) > CLOSE and not (lost[i] or lost[j]):
+            notes.append(
+                f"{first} and {second} correlate at {by:.3f}: what the data say is a combination; "
+                "free one of them, or give a prior"
+            )
+    for one, x in zip(misfit.free, best.x.tolist(), strict=True):
+        if min(x, 1.0 - x) < AT:
+            side, bound = ("lower", one.low) if x < 0.5 else ("upper", one.high)
+            notes.append(f"{one.name} is at its {side} bound, {one.text(bound)}: its interval says little")
+    assumed = [name for name in misfit.muscle.assumed if not any(_covers(name, one) for one in names)]
+    if assumed:
+        notes.append("assumed, not fitted: " + ", ".join(assumed))
+    signs = np.sign(misfit.measured.force)
+    if (signs < 0.0).all():
+        notes.append("all forces are negative: the muscle pushes, or the sign is the other way round")
+    return notes
+
+
+def _covers(field: str, name: str) -> bool:
+    return name == field or name.startswith(f"{field}.")

@@ -1,0 +1,140 @@
+"""What `fit()` gives: best values, how sure they are, how far the model is from each point. Nothing is solved here."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+import attrs
+import numpy as np
+
+from mckibben.spec import Muscle
+from mckibben.units import from_si, show
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+__all__ = ["NUMBERS", "POINTS", "Fitted"]
+
+NUMBERS = {
+    "value": "best value", "error": "standard error", "low": "lower end of the interval",
+    "high": "upper end of the interval", "from": "lower bound of the search", "to": "upper bound of the search",
+    "start": "value of the muscle as given",
+}  # fmt: skip
+"""What is known of each free number, in its SI unit."""
+POINTS = {
+    "length": ("m", "measured length between the fittings"), "pressure": ("Pa", "measured pressure"),
+    "force": ("N", "measured force"), "predicted": ("N", "force of the fitted muscle, offsets included"),
+    "weight": ("1", "weight of the point"),
+}  # fmt: skip
+"""What is known of each point."""
+
+
+@attrs.frozen(eq=False, repr=False)
+class Fitted:
+    """A muscle fitted to measured forces, as `fit` gives it; `muscle` is a muscle like any other.
+
+    Args:
+        muscle: the muscle with the best values.
+        given: the muscle from which the fit began.
+        data: xarray Dataset: of each free `number` its value, error, low, high and bounds (SI), `correlation`; of each
+            `point` length, pressure, force, predicted (SI), test and branch.
+    """
+
+    muscle: Muscle
+    given: Muscle
+    data: xr.Dataset
+
+    @property
+    def numbers(self) -> tuple[str, ...]:
+        """Names of what was free."""
+        return tuple(str(name) for name in self.data["number"].values)
+
+    @property
+    def values(self) -> dict[str, float]:
+        """Best values by name, SI."""
+        return dict(zip(self.numbers, self.data["value"].values.tolist(), strict=True))
+
+    @property
+    def residuals(self) -> np.ndarray:
+        """Predicted less measured force [N] at every point."""
+        return np.asarray(self.data["predicted"].values - self.data["force"].values)
+
+    @property
+    def rms(self) -> float:
+        """Root of the mean square of the residuals [N]."""
+        return float(np.sqrt(np.mean(self.residuals**2)))
+
+    @property
+    def largest(self) -> float:
+        """Largest residual by size [N]."""
+        return float(np.abs(self.residuals).max())
+
+    @property
+    def percent(self) -> float:
+        """`rms` in per cent of the largest measured force."""
+        return 100.0 * self.rms / float(np.abs(self.data["force"].values).max())
+
+    @property
+    def explained(self) -> float:
+        """Share of the variance of the measured forces that the fit explains, R squared."""
+        force = self.data["force"].values
+        return 1.0 - float(np.sum(self.residuals**2) / np.sum((force - force.mean()) ** 2))
+
+    @property
+    def notes(self) -> tuple[str, ...]:
+        """What must be known to use the numbers: what is not determined, at a bound, assumed."""
+        return tuple(line for line in str(self.data.attrs["notes"]).split("\n") if line)
+
+    @property
+    def converged(self) -> bool:
+        """Whether the search came to an end by itself."""
+        return bool(self.data.attrs["converged"])
+
+    @property
+    def undetermined(self) -> tuple[str, ...]:
+        """Numbers that the data do not determine."""
+        return tuple(
+            name for name, lost in zip(self.numbers, self.data["undetermined"].values.tolist(), strict=True) if lost
+        )
+
+    @property
+    def correlation(self) -> Any:
+        """DataFrame of the correlations of the numbers."""
+        frame = self.data["correlation"].to_pandas()
+        frame.columns.name = frame.index.name = None
+        return frame
+
+    @property
+    def intervals(self) -> Any:
+        """DataFrame, SI: `low` and `high` of each number at the level asked for."""
+        import pandas as pd
+
+        return pd.DataFrame({name: self.data[name].values for name in ("low", "high")}, index=list(self.numbers))
+
+    @property
+    def table(self) -> Any:
+        """DataFrame for people, in usual units; a number that the data leave open has "not determined" for a value."""
+        import pandas as pd
+
+        rows = []
+        for k in range(len(self.numbers)):
+            at = {kind: float(self.data[kind].values[k]) for kind in NUMBERS}
+            display = str(self.data["display"].values[k])
+            lost = bool(self.data["undetermined"].values[k])
+            rows.append(
+                {
+                    "value": "not determined" if lost else show(at["value"], display),
+                    "error": "" if lost or not np.isfinite(at["error"]) else f"{from_si(at['error'], display):.3g}",
+                    "interval": f"{from_si(at['low'], display):.6g} to {show(at['high'], display)}",
+                    "bounds": f"{from_si(at['from'], display):.6g} to {show(at['to'], display)}",
+                }
+            )
+        return pd.DataFrame(rows, index=list(self.numbers))
+
+    def test(self, name: str) -> Any:
+        """The points of one test, as a Dataset."""
+        return self.data.isel(point=np.flatnonzero(self.data["test"].values == name))
+
+    def __repr__(self) -> str:
+        counts = f"{len(self.numbers)} numbers to {len(self.residuals)} points"
+        return f"<Fit: {counts}, rms {self.rms:.3g} N ({self.percent:.2g} % of the largest force)>"
