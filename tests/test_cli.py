@@ -31,7 +31,10 @@ points = 3
 """
 BEYOND = 'test.length="130 mm"'
 """Every state lies beyond full extension, so that nothing is compiled: fast."""
-COMMANDS = ("run", "sweep", "limits", "working-range", "force-map", "check", "presets", "plot", "reproduce", "info")
+COMMANDS = (
+    "run", "sweep", "limits", "working-range", "force-map", "check", "presets", "data check", "plot",
+    "reproduce", "info",
+)  # fmt: skip
 
 
 def invoke(*words: object) -> Result:

@@ -13,6 +13,7 @@ import mckibben as mk
 from mckibben.paper import figures as paper
 from mckibben.paper import reproduce as making
 from mckibben.paper import sketches
+from mckibben.paper.measured import measured_points, read_measured
 from mckibben.results.result import Result
 from mckibben.spec import SpecError
 from mckibben.view import curves, shape3d, style
@@ -147,9 +148,32 @@ def test_fig4_compares_with_the_formula_and_draws_no_measurement_unless_given(
 
     file = tmp_path / "lab.csv"
     file.write_text("pressure,value\n0.0,3.0\n1.0,90.0\n", encoding="utf-8")
-    given = paper.fig4(cases, results["free"], {"a": file})
+    points = measured_points({"a": read_measured(file, "a", "115 mm")}, cases, results["free"])
+    given = paper.fig4(cases, results["free"], points)
     assert "measured" in [text.get_text() for text in given.axes[0].get_legend().get_texts()]
     np.testing.assert_array_equal(drawn(given, 0, -1), [[0.0, 1.0], [3.0, 90.0]])
+    note = given.get_supxlabel().replace("\n", " ")
+    worst = results["a"].force[-1] - 90.0
+    assert (
+        f"a) model less measured (lab.csv): rms {np.hypot(worst, results['a'].force[0] - 3.0) / 2**0.5:.3g} N" in note
+    )
+    assert f"largest difference {worst:.3g} N ({worst / 0.9:.2g} %) at 1 bar" in note
+
+
+def test_measured_changes_of_length_are_compared_in_fig4(results: dict[str, Result], tmp_path: Path) -> None:
+    """As change of length over the length before, in the old form, or as lengths with units: the same points."""
+    free, L = results["free"], 0.115
+    old, new = tmp_path / "old.csv", tmp_path / "new.csv"
+    values = free.length / L - 1.0 + 0.01
+    rows = [f"{1e-5 * P},{x}" for P, x in zip(free.pressure, values, strict=True)]
+    old.write_text("\n".join(["pressure,value", *rows]), encoding="utf-8")
+    rows = [f"{1e-3 * P};{1e3 * L * (1.0 + x)}" for P, x in zip(free.pressure, values, strict=True)]
+    new.write_text("\n".join(["pressure [kPa];length [mm]", *rows]), encoding="utf-8")
+    for file in (old, new):
+        found = measured_points({"c": read_measured(file, "c", "115 mm")}, {"c": results["c"]}, free)["c"]
+        np.testing.assert_allclose(found.value, values, rtol=1e-9)
+        np.testing.assert_allclose(found.comparison.differences, -0.01, rtol=1e-9)
+        assert found.comparison.outside == 0
 
 
 @pytest.mark.parametrize(
@@ -158,10 +182,10 @@ def test_fig4_compares_with_the_formula_and_draws_no_measurement_unless_given(
 def test_a_bad_file_of_measurements_is_named(tmp_path: Path, text: str) -> None:
     file = tmp_path / "lab.csv"
     file.write_text(text, encoding="utf-8")
-    with pytest.raises(SpecError, match=re.escape("measured.a")):
-        paper.read_measured(file, "measured.a")
+    with pytest.raises(SpecError, match=re.escape("measured.a: lab.csv")):
+        read_measured(file, "a", "115 mm")
     with pytest.raises(SpecError, match="cannot be read"):
-        paper.read_measured(tmp_path / "none.csv")
+        read_measured(tmp_path / "none.csv", "a", "115 mm")
 
 
 def test_every_figure_of_the_paper_is_written_whole(results: dict[str, Result], tmp_path: Path) -> None:

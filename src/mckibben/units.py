@@ -16,7 +16,19 @@ from typing import Any, TypeAlias
 
 import numpy as np
 
-__all__ = ["DISPLAY", "Number", "Quantity", "UnitError", "from_si", "is_traced", "show", "split", "to_si"]
+__all__ = [
+    "DISPLAY",
+    "Number",
+    "Quantity",
+    "UnitError",
+    "from_si",
+    "is_traced",
+    "is_unit",
+    "scaled",
+    "show",
+    "split",
+    "to_si",
+]
 
 Quantity: TypeAlias = Any
 """What a user may give as a number: an SI float, text with a unit, or a pint quantity."""
@@ -176,6 +188,28 @@ def _example(unit: str) -> str:
     examples = {"m": '"12.5 mm"', "Pa": '"1 bar"', "rad": '"37 deg"', "N": '"20 N"', "m^3": '"40 mL"'}
     examples |= {"N m^2": '"0.5 N mm^2"', "m/N": '"0.01 mm/N"', "1/m": '"20 1/m"', "1": "0.4"}
     return "write it like " + examples.get(unit, f'"1 {unit}"')
+
+
+def scaled(values: Any, unit: str, wanted: str) -> Any:
+    """An array of numbers in `unit` as numbers in the SI unit `wanted`; UnitError for a wrong or unknown unit.
+
+    12.5 in mm is 0.0125 as text is: where the factor is one over a whole number, that number divides.
+    """
+    factor = _factor(unit, wanted)
+    parts = round(1.0 / factor)
+    return values / parts if parts > 1 and math.isclose(parts * factor, 1.0, rel_tol=1e-15) else values * factor
+
+
+@lru_cache(maxsize=512)
+def is_unit(text: str) -> bool:
+    """Whether a text is the name of a unit: "mm", "%", "kg"; not an empty one."""
+    clean = text.strip()
+    if clean in _USUAL or clean == "%":
+        return True
+    try:
+        return bool(_UNIT.fullmatch(clean)) and bool(_registry().parse_units(clean))
+    except Exception:  # pint raises many kinds for unknown units
+        return False
 
 
 def from_si(value: Any, unit: str) -> Any:

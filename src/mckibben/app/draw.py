@@ -11,10 +11,12 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from mckibben.app.console import command, examples, say, table
+from mckibben.app.options import Columns, Held, Units, pairs
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
+    from mckibben.data.values import Data
     from mckibben.results.result import Result
 
 __all__ = ["PLOT", "REPRODUCE", "plot", "reproduce"]
@@ -23,6 +25,7 @@ PLOT = examples(
     "mckibben plot out.nc",
     "mckibben plot out.nc -o force.pdf",
     "mckibben plot out.nc --kind tension -o tension.svg",
+    "mckibben plot out.nc --data bench.csv",
 )
 REPRODUCE = examples(
     "mckibben reproduce", "mckibben reproduce -o paper --force", "mckibben reproduce --measured a=lab.csv"
@@ -55,8 +58,18 @@ def plot(
         Kind, typer.Option(help="auto: the curve of the test; profiles: radius and angle along the muscle")
     ] = Kind.auto,
     force: Annotated[bool, typer.Option("--force", help="replace the picture if it exists")] = False,
+    data: Annotated[
+        Path | None, typer.Option(metavar="FILE", help="measured points to lay over the curve: CSV, TSV or XLSX")
+    ] = None,
+    columns: Columns = None,
+    units: Units = None,
+    held: Held = None,
 ) -> None:
-    """Draw a saved result, without solving anything again."""
+    """Draw a saved result, without solving anything again.
+
+    With --data, measured points are drawn over the curve, and how far it is from them is noted and printed. How their
+    file is read, mckibben data check tells; --column, --unit and --held are of that file.
+    """
     from mckibben import disk
     from mckibben.files import store
 
@@ -64,20 +77,30 @@ def plot(
     suffix = store.suffix_of(target, PICTURES)
     disk.check_target(target, force)
     result = store.load_result(file)
-    figure = _figure(result, kind)
+    measured = None
+    if data is not None:
+        from mckibben.data import compare, read
+
+        asked = pairs("--column", columns), pairs("--unit", units), pairs("--held", held)
+        measured = read.read_data(data, columns=asked[0], units=asked[1], held=asked[2])
+    figure = _figure(result, kind, measured)
     from mckibben.view import style
 
     disk.write(target, style.picture(figure, suffix[1:], PIXELS), force)
     say(f"drawn: {target}")
+    if measured is not None:
+        for note in measured.assumptions:
+            say(f"{measured.source}: {note}")
+        say(f"model less measured: {compare.compare(result, measured)}")
 
 
-def _figure(result: Result, kind: Kind) -> Figure:
+def _figure(result: Result, kind: Kind, measured: Data | None) -> Figure:
     import matplotlib
 
     matplotlib.use("Agg")  # draws to files only, without a window
     from mckibben.view.plot import plot
 
-    return plot(result, str(kind))
+    return plot(result, str(kind), measured)
 
 
 @command
@@ -93,8 +116,8 @@ def reproduce(
 ) -> None:
     """Run the tests of the paper, draw its figures, and sum up how the numbers compare.
 
-    A measured curve is a CSV file with the columns pressure (in bar) and value (force in N, or change of length over
-    length). No measured data come with this package.
+    A measured curve is a file as mckibben data check takes it: pressure and force (a, b), or pressure and length (c,
+    d). How far the model is from it is noted in the figure and printed. No measured data come with this package.
     """
     curves = dict(_pair(text) for text in measured or ())
     from mckibben.app.solving import solving
@@ -116,6 +139,8 @@ def reproduce(
     say(table(columns, rows, title="The paper's actuator", right=(2, 3, 4), whole=()))
     say("model: this package; Eq. (31): the formula without stored energy; stated: the values of docs/theory.md")
     say("assumed, not measured: " + ", ".join(made.muscle.assumed))
+    for name, points in made.measured.items():
+        say(f"{name}: {points.said}")
     for path in made.pictures:
         say(str(path))
 

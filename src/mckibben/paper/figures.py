@@ -5,8 +5,6 @@ Figs. 1 to 3 live in `sketches`. A measured curve is drawn only where its file i
 
 from __future__ import annotations
 
-import csv
-import os
 from collections.abc import Mapping, Sequence
 from functools import partial
 from typing import Any
@@ -21,14 +19,16 @@ from mckibben.compiled.kernel import kernel
 from mckibben.model.cylinder import cylinder_angle, cylinder_force, cylinder_length
 from mckibben.model.parameters import Parameters, parameters
 from mckibben.model.textbook import virtual_work_force
+from mckibben.paper.measured import Measured
 from mckibben.paper.sketches import MAGIC, fig1, fig2, fig3
 from mckibben.results.result import Result
-from mckibben.spec import Muscle, SpecError
+from mckibben.spec import Muscle
 from mckibben.view import style
 from mckibben.view.curves import column, label, mark
+from mckibben.view.measured import draw
 from mckibben.view.shape3d import Tube, View, draw_muscle
 
-__all__ = ["convergence", "fig1", "fig2", "fig3", "fig4", "fig5", "fig6", "formula_force", "read_measured", "textbook"]
+__all__ = ["convergence", "fig1", "fig2", "fig3", "fig4", "fig5", "fig6", "formula_force", "textbook"]
 
 FORMULA, CYLINDER, MODEL = "Eq. (31), no stored energy", "cylinder with stored energy", "model"
 FORMULAS = "Eq. (31) = Chou–Hannaford = Tondu–Lopez"
@@ -36,25 +36,6 @@ DENSITY = "(mJ per mm of initial length)"
 _BLACK: dict[str, Any] = {"color": style.BLACK, "linewidth": 1.3}
 _FORMULA: dict[str, Any] = {"color": style.VERMILLION, "linewidth": 1.1, "linestyle": "--"}
 _CYLINDER: dict[str, Any] = {"color": style.BLUE, "linewidth": 1.1, "linestyle": "-."}
-
-
-def read_measured(path: str | os.PathLike[str], field: str = "measured") -> tuple[np.ndarray, np.ndarray]:
-    """Columns `pressure` (bar) and `value` (N, or change of length over length) of a CSV file with a header."""
-    try:
-        with open(path, newline="", encoding="utf-8-sig") as file:
-            lines = [line for line in file if line.strip() and not line.startswith("#")]
-        separator = ";" if lines and ";" in lines[0] else ","  # as spreadsheets write where "," is decimal
-        rows = list(csv.DictReader(lines, delimiter=separator))
-        table = np.array([[float(row["pressure"]), float(row["value"])] for row in rows])
-    except OSError as error:
-        raise SpecError(field, str(path), f"cannot be read: {error.strerror or error}") from error
-    except (KeyError, TypeError, ValueError) as error:
-        said = "must be a CSV file with columns pressure (bar) and value"
-        advice = "the first line names the columns; numbers have a decimal point"
-        raise SpecError(field, str(path), said, advice) from error
-    if not len(table) or not np.isfinite(table).all():
-        raise SpecError(field, str(path), "must hold at least one row of finite numbers")
-    return table[:, 0], table[:, 1]
 
 
 def middle_angle(result: Result, step: int = 0) -> float:
@@ -79,9 +60,7 @@ def _cylinder(muscle: Muscle, theta: Any, pressure: Any) -> np.ndarray:
     return np.asarray(_forces(*filled, parameters(muscle)))[: len(t)]
 
 
-def fig4(
-    cases: Mapping[str, Result], relaxed: Result, measured: Mapping[str, str | os.PathLike[str]] | None = None
-) -> Figure:
+def fig4(cases: Mapping[str, Result], relaxed: Result, measured: Mapping[str, Measured] | None = None) -> Figure:
     """Fig. 4: cases a to d of the paper.
 
     a, b: force against pressure at constant length: the model, Eq. (31) and the cylinder with stored energy, the latter
@@ -93,7 +72,7 @@ def fig4(
     Args:
         cases: results of the isometric tests "a" and "b" and of the protocols "c" and "d".
         relaxed: states with F = 0 over the pressures.
-        measured: per case, a CSV file to draw beside the curves (see `read_measured`).
+        measured: per case, points to draw beside the curves, with the model's differences from them.
     """
     figure = style.new_figure(style.PAGE, 5.0)
     panels = dict(zip("abcd", figure.subplots(2, 2).ravel(), strict=True))
@@ -104,9 +83,9 @@ def fig4(
     for name, axes in panels.items():
         style.panel(axes, f"{name})")
         if measured and name in measured:
-            pressure, value = read_measured(measured[name], f"measured.{name}")
-            axes.plot(pressure, value, linestyle="none", marker="o", markersize=3.0, markerfacecolor="none",
-                      color=style.GREEN, label="measured")  # fmt: skip
+            points = measured[name]
+            draw(axes, style.shown(points.pressure, "Pa"), points.value, points.branches, name="measured")
+            style.note(figure, f"{name}) {points.said}.")
         style.tidy(axes, "best")
     style.assumption_note(figure, cases["a"].muscle)
     return figure

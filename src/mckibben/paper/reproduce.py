@@ -11,12 +11,14 @@ import attrs
 import numpy as np
 from matplotlib.figure import Figure
 
+from mckibben.data.values import Data
 from mckibben.discretise.bspline import Spline
 from mckibben.discretise.placement import crowding
 from mckibben.discretise.spectral import Line
 from mckibben.experiments.run import run
 from mckibben.model.parameters import parameters
 from mckibben.paper import figures as paper
+from mckibben.paper.measured import Measured, measured_points, read_measured
 from mckibben.results.result import Result
 from mckibben.solver.find import find
 from mckibben.solver.held import Held
@@ -58,11 +60,12 @@ class Row:
 
 @attrs.frozen
 class Reproduction:
-    """What `reproduce` made: the summary's rows and the files of the pictures."""
+    """What `reproduce` made: the summary's rows, the files of the pictures, and the points laid over Fig. 4."""
 
     rows: tuple[Row, ...]
     pictures: tuple[Path, ...]
     muscle: Muscle
+    measured: dict[str, Measured]
 
 
 def reproduce(
@@ -77,14 +80,13 @@ def reproduce(
     Args:
         out_dir: folder of the pictures; made if missing.
         watch: called with (parts done, parts in all, what comes next).
-        measured: CSV files of measured curves for the panels of Fig. 4, by "a", "b", "c", "d": columns pressure (bar)
-            and value (N, or change of length over length). None is part of this package.
+        measured: files of measured curves for the panels of Fig. 4, by "a", "b", "c", "d", as `read_data` takes them:
+            pressure and force, or pressure and length. None is part of this package.
         force: whether pictures that exist may be replaced; if not and there are some, SpecError and nothing is run.
     """
-    folder, measured = Path(out_dir), dict(measured or {})
-    _check(folder, measured, force)
+    folder, muscle = Path(out_dir), presets.paper()
+    data = _check(folder, dict(measured or {}), force)
     tell = watch or (lambda done, total, what: None)
-    muscle = presets.paper()
     total = 8
     results: dict[str, Result] = {}
     for k, name in enumerate(CASES):
@@ -100,9 +102,10 @@ def reproduce(
     tell(6, total, "convergence")
     errors, splines = _convergence(muscle)
     tell(7, total, "pictures")
-    pictures = _save(folder, _figures(muscle, results, curves, errors, measured))
+    points = measured_points(data, results, results["relaxed"])
+    pictures = _save(folder, _figures(muscle, results, curves, errors, points))
     tell(8, total, "done")
-    return Reproduction(_rows(results, splines), pictures, muscle)
+    return Reproduction(_rows(results, splines), pictures, muscle, points)
 
 
 def case(name: str) -> Isometric | Protocol:
@@ -117,24 +120,24 @@ def case(name: str) -> Isometric | Protocol:
     ])  # fmt: skip
 
 
-def _check(folder: Path, measured: Mapping[str, str | os.PathLike[str]], force: bool) -> None:
-    """Everything that can be wrong with what was asked, before anything takes time."""
+def _check(folder: Path, measured: Mapping[str, str | os.PathLike[str]], force: bool) -> dict[str, Data]:
+    """Everything that can be wrong with what was asked, before anything takes time; the measured points."""
     if folder.exists() and not folder.is_dir():
         raise SpecError("out_dir", str(folder), "is not a folder")
     unknown = sorted(set(measured) - set(CASES))
     if unknown:
         raise SpecError("measured", unknown[0], "must be one of " + ", ".join(CASES))
-    for name, path in measured.items():
-        paper.read_measured(path, f"measured.{name}")
+    data = {name: read_measured(path, name, CASES[name]) for name, path in measured.items()}
     there = [f"{stem}.{kind}" for stem in PICTURES for kind in ("pdf", "png") if (folder / f"{stem}.{kind}").exists()]
     if there and not force:
         said = f"holds {len(there)} of the pictures already, {there[0]} for one"
         raise SpecError("out_dir", str(folder), said, "choose another folder, or allow replacing them with force")
+    return data
 
 
 def _figures(
     muscle: Muscle, results: Mapping[str, Result], curves: list[Result],
-    errors: Mapping[str, tuple[list[float], list[float]]], measured: Mapping[str, str | os.PathLike[str]],
+    errors: Mapping[str, tuple[list[float], list[float]]], measured: Mapping[str, Measured],
 ) -> dict[str, Figure]:  # fmt: skip
     made = (
         paper.fig1(muscle), paper.fig2(muscle), paper.fig3(muscle), paper.fig4(results, results["relaxed"], measured),

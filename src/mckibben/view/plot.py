@@ -7,6 +7,7 @@ from typing import Any
 
 from matplotlib.figure import Figure
 
+from mckibben.data.values import Data
 from mckibben.results.effects import Effects
 from mckibben.results.result import Result, State
 from mckibben.results.sensitivity import Sensitivity
@@ -15,6 +16,7 @@ from mckibben.spec.errors import SpecError, nearest
 from mckibben.units import show
 from mckibben.view import curves, maps, style
 from mckibben.view.effects import bars
+from mckibben.view.measured import overlay
 from mckibben.view.tornado import tornado
 
 __all__ = ["KINDS", "plot"]
@@ -30,7 +32,7 @@ KINDS: dict[str, Callable[[Result], Figure]] = {
 _TAKES = "a result of run, solve, sensitivity, effects, force_map or working_range"
 
 
-def plot(result: Any, kind: str = "auto") -> Figure:
+def plot(result: Any, kind: str = "auto", data: Any = None) -> Figure:
     """Draw what `run`, `solve`, `load`, `sensitivity`, `effects`, `force_map` or `working_range` gave.
 
     Nothing is solved.
@@ -48,13 +50,17 @@ def plot(result: Any, kind: str = "auto") -> Figure:
         kind: of a result or a state, as on the command line: "auto" (as above), "profiles" (radius and angle along the
             muscle), "tension" (of one fibre along it), "energy" (the stored energies) or "shares" (of the axial load
             that mesh and chamber carry).
+        data: measured points to lay over the curve of one result or of a family, as `read_data` gives them. Those at
+            which the bench held what the test holds are drawn, and the rms and the largest difference of the curve from
+            them are noted below, in N and in per cent of the largest measured force (where contractions are drawn, in
+            per cent of the length), inside the range that the curve covers.
 
     Returns:
         A matplotlib Figure, in mm, N, bar and per cent; `figure.savefig("curve.pdf")` writes it.
 
     Raises:
-        SpecError: for anything else, or an unknown kind. A result without a single state is no error: its picture says
-            why.
+        SpecError: for anything else, an unknown kind, or data of which no point belongs to the curve. A result without
+            a single state is no error: its picture says why.
 
     >>> curve = mk.run(mk.presets.paper(), mk.Isometric(length="115 mm", pressure="0 to 1 bar", points=3))
     >>> figure = mk.plot(curve)
@@ -65,6 +71,8 @@ def plot(result: Any, kind: str = "auto") -> Figure:
     """
     if not isinstance(kind, str) or kind not in KINDS:
         raise SpecError("plot.kind", kind, "is unknown", nearest(str(kind), KINDS))
+    if data is not None:
+        return _measured(result, kind, data)
     if isinstance(result, Result):
         return _headed(KINDS[kind](result), result)
     if isinstance(result, State):
@@ -76,6 +84,19 @@ def plot(result: Any, kind: str = "auto") -> Figure:
     if kind != "auto":
         raise SpecError("plot.kind", kind, "is for a result or a state", "leave it out")
     return draw(result)
+
+
+def _measured(result: Any, kind: str, data: Any) -> Figure:
+    """The curve of a result, or a family of curves, with measured points over it."""
+    if not isinstance(data, Data):
+        raise SpecError("plot.data", data, "must be what read_data gives", 'such as mk.read_data("bench.csv")')
+    if kind != "auto":
+        raise SpecError("plot.kind", kind, "has no room for measured points", "leave it out")
+    if isinstance(result, Result):
+        return overlay(plot(result), {"": result}, data)
+    if isinstance(result, Mapping) and not hasattr(result, "data_vars"):
+        return overlay(plot(result), {str(name): item for name, item in result.items()}, data)
+    raise SpecError("plot.data", allowed="goes with a result of run, or several by their names")
 
 
 def _family(results: Mapping[Any, Any], kind: str) -> Figure:
