@@ -110,7 +110,7 @@ def case_text(name: str) -> str:
     )
     for table, lines in tables.items():
         text += ["", f"[muscle.{table}]", *lines] if table else []
-    length = f"{1e3 * _TEST_STRETCH * muscle.braid.length:.0f} mm"
+    length = f"{1e3 * _TEST_STRETCH * muscle.rest_length:.0f} mm"
     text += ["", "[test]", 'kind = "isometric"', f'length = "{length}"', 'pressure = "0 to 1 bar"', "points = 11", ""]
     return "\n".join(text)
 

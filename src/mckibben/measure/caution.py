@@ -72,7 +72,8 @@ def cautions(muscle: Muscle, *, length: Any, pressure: Any) -> tuple[str, ...]:
         raise SpecError("cautions", allowed="length and pressure must be one value each")
     h, P = (float(getattr(step, name).waypoints[0]) for name in ("length", "pressure"))
     p = parameters(muscle)
-    if p.endless and h * math.sin(muscle.braid.angle) >= muscle.braid.length:  # no such cylinder: a result tells more
+    longest = muscle.braid.length / math.sin(muscle.braid.angle)
+    if p.endless and float(p.active(h)) >= longest:  # no such cylinder: a result tells more
         return (*thick_wall(muscle), *strong({"length": np.array([h]), "pressure": np.array([P])}))
     cylinder = predicted(p, np.asarray(h), np.asarray(P))
     force = float(cylinder.force)
