@@ -192,7 +192,6 @@ def test_derivatives_are_those_of_differences() -> None:
 
 
 @pytest.mark.sweeps
-@pytest.mark.filterwarnings("ignore:.*bulges by half a circle:mckibben.MuscleWarning")
 def test_sweep_over_tubes() -> None:
     """In a batch as alone, and what does not fit spoils no other."""
     test = mk.Isometric(length="90 mm", pressure="3 bar")

@@ -11,10 +11,11 @@ HALF_CIRCLE = 0.5 * math.pi
 
 
 def bulging_pressure(width: Number, thickness: Number, shear_modulus: Number, angle: float = HALF_CIRCLE) -> Number:
-    """Pressure [Pa] at which a wall [m] over a slit of a width [m] bulges as an arc that meets its edges at an angle.
+    """Pressure [Pa] at which a wall [m] over lozenges of a width [m] between sides bulges to an angle at its edges.
 
-    A neo-Hookean strip in plane strain, stretched by lambda = angle/sin(angle), whose tension mu t (lambda -
-    lambda^-3) over the radius of the arc is the pressure.
+    Over a slit it is an arc: a neo-Hookean strip in plane strain, stretched by lambda = angle/sin(angle), whose tension
+    mu t (lambda - lambda^-3) over the radius of the arc is the pressure. A lozenge bears twice that.
     """
     stretch = angle / math.sin(angle)
-    return 2.0 * shear_modulus * thickness / width * math.sin(angle) * (stretch - stretch**-3)
+    slit = 2.0 * shear_modulus * thickness / width * math.sin(angle) * (stretch - stretch**-3)
+    return 2.0 * slit
