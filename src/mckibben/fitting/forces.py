@@ -41,10 +41,10 @@ LARGEST_CHANGE = 0.6
 
 
 class Forces(NamedTuple):
-    """At n points, for k free numbers."""
+    """At n points."""
 
     force: Float[Array, " n"]  #: axial [N], positive where the muscle pulls its fittings together
-    slopes: Float[Array, "n k+2"]  #: by the free numbers, and by what is added to the length and to the pressure; SI
+    slopes: Float[Array, "n k"]  #: by the free numbers, the last two added to length and pressure; SI
     states: Unknowns
     good: Bool[Array, " n"]  #: Newton arrived, near where it began and at a minimum
 
@@ -55,14 +55,14 @@ def forces_at(
     places: tuple[int, ...],
     b: Number,
     muscle: Muscle,
-    free: Float[Array, " k+2"],
+    free: Float[Array, " k"],
     points: Float[Array, "n 2"],
     near: Unknowns,
 ) -> Forces:
     """Forces at lengths and pressures (n, 2), from states `near` (n rows).
 
-    `places` says which leaves of the muscle, in the order of `spec.numbers`, the first k of `free` replace; its last
-    two are added to every length [m] and pressure [Pa].
+    `places` says which leaves of the muscle, in the order of `spec.numbers`, all but the last two of `free` replace;
+    those are added to every length [m] and pressure [Pa].
     """
     leaves, tree = jax.tree.flatten(muscle)
     which = jnp.asarray(rows_of(("length", "pressure"), near.loads.shape[-1])[1])
