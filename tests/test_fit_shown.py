@@ -112,3 +112,43 @@ def test_the_table_of_a_fit(fit: mk.Fit, tmp_path: Path) -> None:
     assert "[braid]" in notes
     with pytest.raises(mk.SpecError, match="is a table only"):
         mk.load(path)
+
+
+def test_the_picture_of_a_fit(fit: mk.Fit) -> None:
+    figure = mk.plot(fit)
+    forces, residuals, strips = figure.axes
+    assert forces.get_xlabel() == residuals.get_xlabel() == "Contraction (%)"
+    assert [tick.get_text() for tick in strips.get_xticklabels()] == ["0.5 bar", "1 bar"]
+    drawn = np.concatenate([np.asarray(line.get_ydata()) for line in residuals.lines if line.get_marker() != "None"])
+    np.testing.assert_allclose(np.sort(drawn), np.sort(fit.residuals), rtol=1e-12)
+    said = figure.get_suptitle()
+    assert f"rms {fit.rms:.3g} N ({fit.percent:.2g} % of the largest force)" in said
+    assert f"largest difference {fit.largest:.3g} N" in said
+    assert "braid.angle" in figure.get_supxlabel()
+    assert "are assumed" in figure.get_supxlabel()
+    with pytest.raises(mk.SpecError, match="is for a result"):
+        mk.plot(fit, kind="tension")
+
+
+@pytest.mark.parametrize("tests", [1, 3, 30])
+@pytest.mark.parametrize("isometric", [False, True])
+def test_pictures_of_many_tests(fit: mk.Fit, tests: int, isometric: bool) -> None:
+    rng, count = np.random.default_rng(0), 10 * tests
+    names = np.repeat([f"a test with a long name, {k}" for k in range(tests)], 10)
+    levels, ramp = np.repeat(np.arange(tests), 10), np.tile(np.arange(10), tests)
+    length, pressure = (0.08 + 1e-3 * levels, 1e4 * ramp) if isometric else (0.08 + 3e-3 * ramp, 1e4 * (1 + levels))
+    force = 1e-3 * pressure
+    columns = {"length": length, "pressure": pressure, "force": force, "predicted": force + rng.normal(size=count)}
+    data = fit.data.drop_dims("point").assign({name: ("point", values) for name, values in columns.items()})
+    data = data.assign(test=("point", names), branch=("point", np.array(["loading", "unloading"] * (count // 2))))
+    data["undetermined"] = ("number", np.array([False, True]))
+    figure = mk.plot(type(fit)(fit.muscle, fit.given, data))
+    assert figure.axes[0].get_xlabel() == ("Pressure (bar)" if isometric else "Contraction (%)")
+    assert len(figure.legends[0].get_texts()) <= 30
+    assert "Not determined by these data: chamber.law.c1." in figure.get_supxlabel()
+
+
+def test_residuals_over_both_where_both_vary(fit: mk.Fit) -> None:
+    data = fit.data.assign(pressure=("point", np.linspace(1e4, 1e5, len(fit.residuals))))
+    labels = {axes.get_xlabel() for axes in mk.plot(type(fit)(fit.muscle, fit.given, data)).axes}
+    assert labels == {"Contraction (%)", "Pressure (bar)"}
