@@ -1,11 +1,17 @@
 """How a fit is kept and shown: files, pictures, the fit file, the command. One small fit serves all."""
 
+import json
+import subprocess
+import sys
 from pathlib import Path
 
 import numpy as np
 import pytest
+from typer.testing import CliRunner
 
 import mckibben as mk
+from mckibben.app.cli import app
+from mckibben.fitting.fitfile import read_fit
 
 pytestmark = pytest.mark.app
 
@@ -152,3 +158,169 @@ def test_residuals_over_both_where_both_vary(fit: mk.Fit) -> None:
     data = fit.data.assign(pressure=("point", np.linspace(1e4, 1e5, len(fit.residuals))))
     labels = {axes.get_xlabel() for axes in mk.plot(type(fit)(fit.muscle, fit.given, data)).axes}
     assert labels == {"Contraction (%)", "Pressure (bar)"}
+
+
+FILE = """
+[muscle]
+preset = "paper"
+
+[data]
+file = "bench.csv"
+points = 6
+branch = "loading"
+
+[free]
+"braid.angle" = "35 deg to 39 deg"
+chamber.law.c1 = "4 kPa to 20 kPa"
+
+[weights]
+"0.5 bar" = 2
+
+[options]
+starts = 1
+"""
+
+
+@pytest.fixture
+def file(data: mk.Data, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+    monkeypatch.chdir(tmp_path)
+    data.to_pandas().to_csv("bench.csv", index=False)
+    path = tmp_path / "fit.toml"
+    path.write_text(FILE, encoding="utf-8")
+    return path
+
+
+def test_a_fit_file_says_what_fit_takes(file: Path) -> None:
+    asked = read_fit(file, ["options.starts=3", "free.braid.angle=36 deg to 38 deg", "braid.fibres=60"])
+    assert asked.free == {"braid.angle": "36 deg to 38 deg", "chamber.law.c1": "4 kPa to 20 kPa"}
+    assert asked.muscle.braid.fibres == 60
+    assert asked.options == {"starts": 3, "weights": {"0.5 bar": 2.0}}
+    assert (asked.data.tests, len(asked.data)) == (("0.5 bar", "1 bar"), 12)
+    only = read_fit(file, ['data.only=["1 bar"]', "data.points=8"]).data
+    assert (only.tests, len(only)) == (("1 bar",), 8)
+    several = read_fit(file, ['data.file=["bench.csv", "bench.csv"]']).data
+    assert len(several.tests) == 4
+
+
+@pytest.mark.parametrize(
+    ("override", "said"),
+    [
+        ("data.fiel=a.csv", 'data.fiel: unknown key; did you mean "file"'),
+        ("data.file=3", "data.file = 3: must be text or a list of texts"),
+        ("data.file=[]", "data.file"),
+        ("data.file=none.csv", "none.csv"),
+        ("data.points=1", "data.points = 1: must be a whole number, at least 3"),
+        ("data.points=true", "data.points = True: must be a whole number"),
+        ("data.only=2 bar", "data.only = .*: is no test of these data"),
+        ("data.branch=up", "data.branch = .*: must be one of loading, unloading, unknown"),
+        ("data.branch=unloading", "data.branch = .*: has no points; there are: loading"),
+        ("options.start=2", 'options.start: unknown key; did you mean "starts"'),
+        ("options.starts=0", "options.starts = 0: must be from 1 to 1000"),
+        ("options.tolerance=1", "options.tolerance = 1: must be from 1e-10 to 0.01"),
+        ("options.profiles=yes", "options.profiles = .*: must be true or false"),
+        ("weights.1 bar=much", "weights.1 bar = .*: must be a number"),
+        ("braid.angel=1 deg", "braid.angel"),
+    ],
+)
+def test_what_is_wrong_in_a_fit_file_is_named(file: Path, override: str, said: str) -> None:
+    with pytest.raises(mk.SpecError, match=said) as told:
+        read_fit(file, [override])
+    assert "\n" not in str(told.value)
+
+
+@pytest.mark.parametrize(
+    ("text", "said"),
+    [
+        (FILE.replace("[free]", "[frei]"), 'frei: unknown key; did you mean "free"'),
+        (FILE.replace("[data]", "[options.data]"), "data: is missing; write a"),
+        ("free = 3\n" + FILE.replace("[free]", "[priors]"), "free = 3: must be a table"),
+        (FILE.replace('file = "bench.csv"', ""), "data.file: is missing"),
+    ],
+)
+def test_tables_that_are_missing_are_named(file: Path, text: str, said: str) -> None:
+    file.write_text(text, encoding="utf-8")
+    with pytest.raises(mk.SpecError, match=said):
+        read_fit(file)
+
+
+def test_a_fit_file_is_no_case(file: Path) -> None:
+    for command in ("run", "check", "sweep"):
+        done = CliRunner().invoke(app, [command, str(file)])
+        assert done.exit_code == 2
+        assert "describes a fit; give it to mckibben fit" in done.stderr
+
+
+def test_command(file: Path) -> None:
+    runner = CliRunner()
+    done = runner.invoke(app, ["fit", str(file), "-o", "fit.nc", "--plot", "fit.png", "--muscle", "fitted.toml"])
+    assert done.exit_code == 0, done.output
+    for said in ("braid.angle", "95 % interval", "0.5 bar", "R² 0.99", "muscles tried in", "saved to fit.nc"):
+        assert said in done.stdout
+    assert Path("fit.png").read_bytes().startswith(b"\x89PNG")
+    found = mk.load("fit.nc")
+    assert isinstance(found, mk.Fit)
+    assert mk.read_case("fitted.toml", test_required=False).muscle == found.muscle
+    assert runner.invoke(app, ["check", "fitted.toml"]).exit_code == 0
+    assert runner.invoke(app, ["plot", "fit.nc", "-o", "again.png"]).exit_code == 0
+    assert Path("again.png").read_bytes() == Path("fit.png").read_bytes()
+    held = runner.invoke(app, ["info", "fit.nc"])
+    assert "a fit of 2 numbers to 12 points" in held.stdout
+    refused = runner.invoke(app, ["fit", str(file), "-o", "fit.nc"])
+    assert refused.exit_code == 2
+    assert "exists" in refused.stderr
+    assert runner.invoke(app, ["plot", "fit.nc", "--data", "bench.csv", "-o", "b.png"]).exit_code == 2
+
+
+def test_command_for_programs(file: Path) -> None:
+    runner = CliRunner()
+    done = runner.invoke(app, ["fit", str(file), "--json", "--set", "free.braid.angle=36.5 deg to 37.5 deg"])
+    assert done.exit_code == 0, done.output
+    found = json.loads(done.stdout)
+    angle = found["numbers"]["braid.angle"]
+    assert angle["determined"]
+    assert angle["low"] < angle["value"] < angle["high"]
+    assert np.rad2deg(angle["value"]) == pytest.approx(37.0, abs=0.3)
+    assert [one["name"] for one in found["tests"]] == ["0.5 bar", "1 bar"]
+    assert found["muscle"]["braid"]["fibres"] == 56
+    profiled = json.loads(runner.invoke(app, ["fit", str(file), "--json", "--profiles"]).stdout)
+    assert profiled["intervals"] == "profile likelihood"
+    quiet = runner.invoke(app, ["fit", str(file), "-q", "-o", "points.csv"])
+    assert (quiet.exit_code, quiet.output) == (0, "")
+    assert Path("points.csv.txt").exists()
+    wrong = runner.invoke(app, ["fit", str(file), "--json", "--set", "free.braid.angel=1 deg to 2 deg"])
+    assert wrong.exit_code == 2
+    assert 'did you mean \\"braid.angle\\"' in wrong.stdout
+
+
+def test_a_search_that_had_not_settled_exits_3(fit: mk.Fit, file: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    data = fit.data.assign_attrs(converged=0, message="too long")
+    data["undetermined"] = ("number", np.array([False, True]))
+    lost = type(fit)(fit.muscle, fit.given, data)
+    monkeypatch.setattr("mckibben.fitting.fit.fit", lambda *_, **__: lost)
+    done = CliRunner().invoke(app, ["fit", str(file), "-o", "fit.nc"])
+    assert done.exit_code == 3
+    assert "not determined" in done.stdout
+    assert "had not settled" in done.stdout
+    assert "had not settled" in CliRunner().invoke(app, ["info", "fit.nc"]).stdout
+    found = json.loads(CliRunner().invoke(app, ["fit", str(file), "--json"]).stdout)
+    assert found["numbers"]["chamber.law.c1"]["value"] is None
+    assert not found["converged"]
+
+
+def test_looking_at_files_loads_no_solver(fit: mk.Fit, tmp_path: Path) -> None:
+    curve = mk.run(mk.presets.paper(), mk.Isobaric(length="85 mm to 105 mm", pressure="1 bar", points=3))
+    mk.save(curve, tmp_path / "curve.nc")
+    mk.save(fit, tmp_path / "fit.nc")
+    script = """
+import sys
+from typer.testing import CliRunner
+import mckibben as mk
+from mckibben.app.cli import app
+mk.load("curve.nc")
+assert not {"jax", "matplotlib", "mckibben.results.fit"} & sys.modules.keys()
+for words in (["info", "fit.nc"], ["plot", "fit.nc"], ["fit", "--help"]):
+    assert CliRunner().invoke(app, words).exit_code == 0
+assert "jax" not in sys.modules
+"""
+    done = subprocess.run([sys.executable, "-c", script], capture_output=True, text=True, cwd=tmp_path)
+    assert done.returncode == 0, done.stderr

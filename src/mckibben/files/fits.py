@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from mckibben.files.hdf5 import opened, written
+from mckibben.files.hdf5 import HOLDS, kind, opened, written
 from mckibben.files.table import write
 from mckibben.results.fit import NUMBERS, POINTS, Fitted
 from mckibben.spec import Muscle
@@ -23,10 +23,8 @@ from mckibben.spec.text import muscle_from_mapping
 if TYPE_CHECKING:
     import xarray as xr
 
-__all__ = ["is_one", "load", "of", "save", "save_csv"]
+__all__ = ["load", "of", "save", "save_csv"]
 
-_HOLDS = "holds"
-"""The attribute by which a file says that it is a fit; those of results have none."""
 _NEEDED: dict[str, tuple[tuple[str, ...], str]] = {
     **{name: (("number",), "f") for name in NUMBERS},
     **{name: (("point",), "f") for name in POINTS},
@@ -49,12 +47,7 @@ def save(fit: Fitted, path: str | PathLike[str], force: bool = False) -> Path:
     texts = {name: (dims, array.astype(str) if array.dtype.kind in "OT" else array, about)
              for name, (dims, array, about) in variables.items()}  # fmt: skip
     sizes = {str(name): int(size) for name, size in data.sizes.items()}
-    return written(path, sizes, texts, {_HOLDS: "fit"} | data.attrs, force)
-
-
-def is_one(stored: xr.Dataset) -> bool:
-    """Whether what was read from a file says that it is a fit."""
-    return str(stored.attrs.get(_HOLDS, "")) == "fit"
+    return written(path, sizes, texts, {HOLDS: "fit"} | data.attrs, force)
 
 
 def load(path: str | PathLike[str]) -> Fitted:
@@ -66,11 +59,11 @@ def of(stored: xr.Dataset, name: str) -> Fitted:
     """The fit that a file of this name holds; SpecError where it holds something else."""
     import xarray as xr
 
-    if not is_one(stored):
+    if kind(stored) != "fit":
         raise SpecError(name, allowed="holds no fit of mckibben", advice="give what mckibben fit or mk.save wrote")
-    about = {str(key): _plain(value) for key, value in stored.attrs.items() if key != _HOLDS}
-    for key, kind in _ABOUT.items():
-        if not isinstance(about.get(key), kind):
+    about = {str(key): _plain(value) for key, value in stored.attrs.items() if key != HOLDS}
+    for key, type_ in _ABOUT.items():
+        if not isinstance(about.get(key), type_):
             raise SpecError(name, allowed=f"does not say its {key}", advice="make it again")
     variables = {}
     for variable in [*_NEEDED, *(str(one) for one in stored.variables if one not in _NEEDED)]:

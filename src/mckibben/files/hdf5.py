@@ -23,7 +23,10 @@ from mckibben.spec.errors import SpecError
 if TYPE_CHECKING:
     import xarray as xr
 
-__all__ = ["Variables", "opened", "written"]
+__all__ = ["HOLDS", "Variables", "kind", "opened", "written"]
+
+HOLDS = "holds"
+"""The attribute by which a file says what it holds; those of results have none."""
 
 Variables: TypeAlias = Mapping[str, tuple[tuple[str, ...], np.ndarray, Mapping[str, Any]]]
 """Of each variable its dimensions, its values and what is known of it."""
@@ -84,6 +87,11 @@ def opened(path: str | PathLike[str]) -> xr.Dataset:
         return xr.load_dataset(io.BytesIO(content), engine="h5netcdf", decode_times=False, decode_coords=False)
     except _BROKEN as error:
         raise SpecError(name, allowed="is cut short or damaged", advice="make it again") from error
+
+
+def kind(stored: xr.Dataset) -> str:
+    """What a file says that it holds, "fit"; empty for a result."""
+    return str(stored.attrs.get(HOLDS, ""))
 
 
 def _content(path: str | PathLike[str]) -> bytes:

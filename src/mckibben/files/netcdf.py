@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from mckibben.files.hdf5 import opened, written
+from mckibben.files.hdf5 import kind, opened, written
 from mckibben.results.result import Result
 from mckibben.results.variables import COORDINATES, FIELDS, LATER, OPTIONAL, VARIABLES, about_variable, dimensions, has
 from mckibben.spec import Muscle, Test
@@ -48,7 +48,7 @@ def _checked(name: str, stored: xr.Dataset) -> xr.Dataset:
     import xarray as xr
 
     about = {str(key): str(value) for key, value in stored.attrs.items()}
-    if about.get("holds") == "fit":
+    if kind(stored) == "fit":
         raise SpecError(name, allowed="holds a fit, not a result", advice="open it with mckibben.load")
     writer = about.get("mckibben_version")
     if writer is None:

@@ -97,11 +97,14 @@ def load(path: str | PathLike[str]) -> Result | Fitted:
         raise SpecError(str(path), allowed="is a table only", advice="save results as .nc to load them again")
     if Path(path).suffix.lower() == ".zarr":
         raise SpecError(str(path), allowed="holds a sweep, not one result", advice="open it with mckibben.load")
-    from mckibben.files import fits, netcdf
-    from mckibben.files.hdf5 import opened
+    from mckibben.files import hdf5, netcdf
 
-    stored = opened(path)
-    return (fits.of if fits.is_one(stored) else netcdf.of)(stored, str(path))
+    stored = hdf5.opened(path)
+    if hdf5.kind(stored) == "fit":
+        from mckibben.files import fits
+
+        return fits.of(stored, str(path))
+    return netcdf.of(stored, str(path))
 
 
 def load_result(path: str | PathLike[str]) -> Result:
