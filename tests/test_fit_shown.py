@@ -127,7 +127,7 @@ def test_the_picture_of_a_fit(fit: mk.Fit) -> None:
     assert [tick.get_text() for tick in strips.get_xticklabels()] == ["0.5 bar", "1 bar"]
     drawn = np.concatenate([np.asarray(line.get_ydata()) for line in residuals.lines if line.get_marker() != "None"])
     np.testing.assert_allclose(np.sort(drawn), np.sort(fit.residuals), rtol=1e-12)
-    said = figure.get_suptitle()
+    said = figure.get_suptitle().replace("\u00a0", " ").replace("\n", " ")
     assert f"rms {fit.rms:.3g} N ({fit.percent:.2g} % of the largest force)" in said
     assert f"largest difference {fit.largest:.3g} N" in said
     assert "braid.angle" in figure.get_supxlabel()

@@ -180,7 +180,8 @@ def _said(figure: Figure, fit: Fitted, tests: int) -> None:
     most = float(np.abs(fit.data["force"].values).max())
     worst = f"{fit.largest:.3g} N ({100.0 * fit.largest / most:.2g} %)"
     rms = f"rms {fit.rms:.3g} N ({fit.percent:.2g} % of the largest force)"
-    style.heading(figure, f"{name}: fitted to {many}, {rms}, largest difference {worst}")
+    said = f"{name}, {many}: {rms}, largest difference {worst}"
+    style.heading(figure, said.replace(" %", "\u00a0%").replace(" N", "\u00a0N"))  # no line begins with a unit
     style.note(figure, f"Measured: {fit.data.attrs['source']}.")
     found = [f"{name} {_with_error(row['value'], row['error'])}"
              for name, row in fit.table.iterrows() if name not in fit.undetermined]  # fmt: skip
