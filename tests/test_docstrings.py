@@ -10,7 +10,7 @@ import pytest
 
 import mckibben as mk
 
-PRESETS = ("get", "names", "paper", "reference", "sources")
+PRESETS = ("about", "get", "names", "paper", "reference", "sources")
 NAMES = (*mk.__all__, *(f"presets.{name}" for name in PRESETS))
 OPTIONS = doctest.ELLIPSIS | doctest.NORMALIZE_WHITESPACE
 

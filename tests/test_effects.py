@@ -1,6 +1,8 @@
 """The size of each effect: what two calls of `solve` say, as a table, a chart and a command."""
 
 import json
+import re
+import runpy
 from pathlib import Path
 
 import numpy as np
@@ -64,6 +66,16 @@ def test_friction_is_half_of_what_lies_between_lengthening_and_shortening(found:
     own = mk.effects(rubbing, **HELD)  # type: ignore[arg-type]
     assert_allclose(own.table.loc["friction at the crossings", "force [%]"], share, rtol=1e-9)
     assert_allclose(own.table.loc["stretch of the fibres", "force [%]"], found.table["force [%]"].min())
+
+
+def test_the_page_has_the_table(found: mk.Effects) -> None:
+    """docs/effects.md holds what docs/effects.py makes; of its three muscles the one that is computed here anyway."""
+    docs = Path(__file__).parent.parent / "docs"
+    script = runpy.run_path(str(docs / "effects.py"))
+    assert script["CASES"]["paper"] == HELD
+    page = (docs / "effects.md").read_text(encoding="utf-8")
+    assert set(script["CASES"]) == set(re.findall(r"<!-- table of (\S+) -->", page))
+    assert script["table"](found) in page
 
 
 def test_chart(found: mk.Effects) -> None:

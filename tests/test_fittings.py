@@ -94,3 +94,88 @@ def test_short_muscles_lose_force() -> None:
 def test_wrong_input(compliance: Any) -> None:
     with pytest.raises(mk.SpecError, match=r"fittings\.compliance"):
         mk.Fittings(compliance=compliance)
+
+
+DEAD = 0.007
+"""Dead length [m] of the tests."""
+TEST = mk.Isobaric(pressure="1 bar", length=["92 mm", "122 mm", "136 mm"])
+
+
+def hiding(dead: float = DEAD) -> mk.Muscle:
+    """The paper's muscle with a dead length under its fittings."""
+    return mk.presets.paper().replace("fittings", mk.Fittings(dead_length=dead))
+
+
+def test_a_dead_length_shifts_lengths() -> None:
+    """The braid is in the state of a muscle shorter by the dead length; contraction is of the whole."""
+    plain = mk.run(mk.presets.paper(), mk.Isobaric(pressure="1 bar", length=[0.085, 0.115, 0.129]))
+    found = mk.run(hiding(), TEST)
+    assert found.verdict == plain.verdict == ("stable", "stable", "no equilibrium")
+    assert found.data["reason"].values[2].endswith("straight at 135.7786 mm, the longest possible length")
+    assert_allclose(found.force, plain.force, rtol=1e-9)
+    assert_allclose(found.data["volume"], plain.data["volume"], rtol=1e-9)
+    assert_allclose(found.data["z"].values[:2, -1], found.length[:2] - DEAD, rtol=1e-9)
+    assert_allclose(found.contraction[:2], [0.0, -0.03 / 0.092], atol=1e-12)
+    assert_allclose(found.data["energy"], plain.data["energy"], rtol=1e-9, atol=1e-15)
+    formula = mk.textbook_force(hiding(), length=[0.092, 0.122, 0.15], pressure=1e5)
+    assert_allclose(formula, mk.textbook_force(mk.presets.paper(), length=[0.085, 0.115, 0.143], pressure=1e5))
+
+
+def test_a_dead_length_in_tests_and_limits() -> None:
+    """Free contraction is that of the braid in parts of the whole; limits are those of the braid, longer."""
+    ratio = 0.085 / (0.085 + DEAD)
+    test = mk.FreeContraction(pressure=["0.5 bar", "1 bar"])
+    free = mk.run(hiding(), test)
+    assert_allclose(free.contraction, ratio * mk.run(mk.presets.paper(), test).contraction, rtol=1e-7)
+    (step,) = mk.BlockedForce(pressure="1 bar").as_steps(hiding())
+    assert step.length.waypoints == (0.085 + DEAD,)
+    found, plain = (mk.limits(muscle, pressure="1 bar") for muscle in (hiding(), mk.presets.paper()))
+    for name in ("shortest", "longest", "stable_down_to", "force_extremum_length"):
+        assert getattr(found, name) == pytest.approx(getattr(plain, name) + DEAD, abs=1e-8)
+    assert found.shortest_force == pytest.approx(plain.shortest_force, rel=1e-5)
+    assert mk.cautions(hiding(), length="122 mm", pressure="1 bar") == ()
+
+
+def test_slopes_by_the_dead_length() -> None:
+    """dF/d(dead length) = -dF/dh at a length held."""
+
+    def force(muscle: mk.Muscle, length: Any) -> Any:
+        return mk.response(muscle, mk.Isometric(length=length, pressure="1 bar"), tolerance=1e-9)["force"][0]
+
+    by_muscle, by_length = jax.grad(force, (0, 1))(hiding(), 0.122)
+    assert float(by_muscle.fittings.dead_length) == pytest.approx(-float(by_length), rel=1e-9, abs=0.0)
+
+
+def test_a_sweep_of_the_dead_length(tmp_path: Any) -> None:
+    over = {"fittings.dead_length": [0.0, DEAD]}
+    held = mk.sweep(hiding(), mk.Isometric(length="115 mm", pressure="1 bar"), over, workers=1)
+    assert (held["method"] == 0).all()
+    shifted = mk.solve(mk.presets.paper(), length=0.115 - DEAD, pressure="1 bar").force
+    assert_allclose(held["force"].values[:, 0], [101.22143528, shifted], rtol=1e-9)
+    parts = mk.sweep(hiding(), mk.Isometric(contraction="-10 %", pressure="1 bar"), over, workers=1)
+    assert_allclose(parts["length"].values[:, 0], [1.1 * 0.085, 1.1 * (0.085 + DEAD)], rtol=1e-9)
+
+
+def test_files_of_a_dead_length(tmp_path: Any) -> None:
+    found = mk.run(hiding(), TEST)
+    mk.save(found, tmp_path / "curve.nc")
+    assert mk.load(tmp_path / "curve.nc") == found
+    assert mk.plot(found).axes
+    with pytest.raises(mk.SpecError, match="fittings: are given nothing; give compliance, dead_length or both"):
+        mk.Fittings()
+    with pytest.raises(mk.SpecError, match=r"fittings\.dead_length = -1 mm: must be at least 0 mm"):
+        mk.Fittings(dead_length="-1 mm")
+
+
+def test_a_dead_length_beside_a_compliance() -> None:
+    both = mk.presets.paper().replace("fittings", mk.Fittings(compliance=C, dead_length=DEAD))
+    state = mk.solve(both, length="117 mm", pressure="1 bar")
+    without = mk.solve(giving(), length="110 mm", pressure="1 bar")
+    assert_allclose(state.force, without.force, rtol=1e-9)
+    assert not mk.run(giving(), TEST).data["length"].isnull().any()
+
+
+def test_the_papers_mesh_has_rigid_fittings() -> None:
+    test = mk.Isometric(length="122 mm", pressure="1 bar")
+    with pytest.raises(mk.SpecError, match="in fittings that do not give way"):
+        mk.run(giving(), test, discretisation="paper")

@@ -17,7 +17,7 @@ import pytest
 
 import mckibben as mk
 from mckibben.compiled import kernel as kernels
-from mckibben.compiled import options
+from mckibben.compiled import options, recent
 from mckibben.compiled.executable import Executable, compiled, loaded
 from mckibben.compiled.folder import SUFFIX, private
 from mckibben.compiled.kernel import Kernel, keeping, kernel
@@ -320,3 +320,25 @@ def test_a_folder_that_others_can_write_to_is_not_used(sought: tuple[Path, Held,
     assert not list(place.iterdir())
     assert private(place.parent / "new")
     assert (place.parent / "new").stat().st_mode & 0o777 == 0o700
+
+
+def test_executables_in_memory_are_bounded(monkeypatch: pytest.MonkeyPatch) -> None:
+    """The least recently used goes, and comes back when it is called."""
+    monkeypatch.setattr(recent, "_entries", [])
+    monkeypatch.setattr(recent, "LIMIT", 2)
+    double = kernel(lambda factor, x: factor * x)
+    made: list[tuple[int, ...]] = []
+    make = Kernel._made
+
+    def counted(self: Kernel, kind: Any) -> Any:
+        made.append(kind.static)
+        return make(self, kind)
+
+    monkeypatch.setattr(Kernel, "_made", counted)
+    for factor in (2, 3, 2, 4, 2, 3):
+        assert double(factor, np.ones(2)).tolist() == [factor, factor]
+        assert double._cache_size() <= 2
+    assert made == [(2,), (3,), (4,), (3,)]
+    double.clear_cache()
+    assert double._cache_size() == 0
+    assert recent._entries == []

@@ -9,7 +9,7 @@ import pytest
 
 import mckibben as mk
 from mckibben.experiments import foresee
-from mckibben.measure.caution import after
+from mckibben.measure.signs import after
 from mckibben.spec import Path, Step
 from mckibben.spec.plausible import trusted
 from mckibben.spec.text import muscle_from_mapping, plain, test_from_mapping, to_toml

@@ -10,7 +10,11 @@ from numpy.testing import assert_allclose
 
 import mckibben as mk
 
-pytestmark = pytest.mark.experiments
+# such soft rubber at 1 bar would bulge through the sleeve: a caution, and no matter here
+pytestmark = [
+    pytest.mark.experiments,
+    pytest.mark.filterwarnings("ignore:.*bulges by half a circle:mckibben.MuscleWarning"),
+]
 
 FIBRE = attrs.evolve(mk.presets.paper().braid.fibre, stretch=True, axial_stiffness="150 N")
 TUBE = mk.Chamber(outer_diameter="24 mm", inner_diameter="22 mm", wall="thick", law=mk.Rubber(E="0.1 MPa"))

@@ -27,6 +27,7 @@ _PUBLIC = {
     "mckibben.results.sensitivity": ("Sensitivity",),
     "mckibben.fitting.fit": ("fit",),
     "mckibben.fitting.answer": ("Fit",),
+    "mckibben.fitting.choice": ("compare_models",),
     "mckibben.view.plot": ("plot",),
     "mckibben.results.result": ("Result", "State"),
     "mckibben.data.read": ("read_data",),

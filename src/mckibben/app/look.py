@@ -116,7 +116,7 @@ def presets(
     if name is None:
         if toml:
             raise SpecError("--toml", allowed="needs the name of a preset", advice="one of " + ", ".join(known.names()))
-        lines = [(key, (getattr(known, key).__doc__ or "").split("\n")[0]) for key in known.names()]
+        lines = [(key, known.about(key)) for key in known.names()]
         if as_json:
             show_json({"presets": [{"name": key, "about": about} for key, about in lines]})
         else:

@@ -5,6 +5,7 @@ structure of the results is kept as a pytree with their numbers for leaves, beca
 """
 
 import functools
+import itertools
 import secrets
 import threading
 from collections.abc import Callable, Sequence
@@ -26,6 +27,7 @@ class _Tracing(threading.local):
 
 
 tracing = _Tracing()
+_turns = itertools.count()
 _one_at_a_time = threading.Lock()
 """Python traces one function at a time anyway, and faster so: only the compiler runs beside."""
 
@@ -38,8 +40,10 @@ class Executable:
         self._tree: Any = jax.tree.structure(results)
         self._here = jax.default_backend() == "cpu"
         self.ran = False  #: whether it has ever given results
+        self.used = next(_turns)  #: when it was made or last called, among all of them
 
     def __call__(self, leaves: Sequence[Any]) -> Any:
+        self.used = next(_turns)
         results = self._function(list(leaves))
         if self._here:
             results = [np.asarray(one) for one in results]

@@ -23,6 +23,7 @@ from mckibben.compiled import kept
 from mckibben.compiled.describe import UnkeepableError, describe, describe_tree
 from mckibben.compiled.executable import Executable, compiled, loaded, tracing
 from mckibben.compiled.options import OPTIONS, QUICK, Options, usual
+from mckibben.compiled.recent import forget, remember
 
 __all__ = ["QUICK", "Kernel", "keeping", "kernel"]
 
@@ -128,9 +129,7 @@ class Kernel:
     def clear_cache(self) -> None:
         """Forget what was compiled in this process."""
         self._inside.clear_cache()
-        with self._lock:
-            self._known.clear()
-            self._coming.clear()
+        forget(self._known)
 
     def _cache_size(self) -> int:
         return self._inside._cache_size() + len(self._known)
@@ -174,21 +173,25 @@ class Kernel:
     def _find(self, kind: _Kind) -> Executable:
         """The executable, made once and waited for by others."""
         with self._lock:
-            coming = self._coming.get(kind)
-            if coming is None:
+            known, coming = self._known.get(kind), self._coming.get(kind)
+            if known is None and coming is None:
                 mine = self._coming[kind] = Future()
+        if known is not None:
+            return known
         if coming is not None:
             return coming.result()
         try:
             found = self._made(kind)
         except BaseException as error:
-            with self._lock:
-                self._coming.pop(kind, None)
             mine.set_exception(error)
             raise
-        self._known[kind] = found
-        mine.set_result(found)
-        return found
+        else:
+            remember(self._known, kind, found)
+            mine.set_result(found)
+            return found
+        finally:
+            with self._lock:
+                self._coming.pop(kind, None)
 
     def _made(self, kind: _Kind) -> Executable:
         file = self._file(kind)
@@ -222,9 +225,7 @@ class Kernel:
         if file is not None:
             with suppress(OSError):
                 file.unlink()
-        with self._lock:
-            self._known.pop(kind, None)
-            self._coming.pop(kind, None)
+        forget(self._known, kind)
         return self._find(kind)
 
     def _compile(self, kind: _Kind) -> Executable:

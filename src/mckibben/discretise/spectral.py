@@ -42,7 +42,7 @@ class Line:
     @classmethod
     def of(cls, muscle: Muscle, size: int) -> "Line":
         """The space of symmetric shapes of a muscle: what its ends hold, and what its fibres may do."""
-        roll, give = muscle.braid.joint == Joint.PIN, muscle.fittings is not None
+        roll, give = muscle.braid.joint == Joint.PIN, muscle.gives_way
         return cls(size, str(muscle.ends), stretch=muscle.braid.fibre.stretch, roll=roll, give=give)
 
     @property

@@ -33,14 +33,16 @@ class Effect:
     assumed: bool = False  #: whether its size rests on a number that is not the muscle's own
 
 
+_COMPLIANCE = "0.01 mm/N"
+
 EFFECTS = (
     Effect("stretch of the fibres", "braid.fibre.stretch", True, False, "braid.fibre.stretch = true"),
     Effect("roll at the crossings", "braid.joint", "pin", "hinge", 'braid.joint = "pin"'),
     Effect("wall inside the braid", "chamber.lies", "inside", "outside", 'chamber.lies = "inside"'),
     Effect("thickness of the wall", "chamber.wall", "thick", "thin", 'chamber.wall = "thick"'),
     Effect(
-        "fittings that give way", "fittings", Fittings(compliance="0.01 mm/N"), None,
-        'fittings.compliance = "0.01 mm/N"', assumed=True,
+        "fittings that give way", "fittings", Fittings(compliance=_COMPLIANCE), None,
+        f'fittings.compliance = "{_COMPLIANCE}"', assumed=True,
     ),
     Effect(
         "friction at the crossings", "friction", Friction(coefficient=0.3, arm="0.1 mm"), None,
@@ -90,10 +92,14 @@ def effects(muscle: Muscle, *, length: Any = None, contraction: Any = None, pres
 
 
 def _own(effects: Iterable[Effect], muscle: Muscle) -> list[Effect]:
-    """The effects, with the muscle's own friction where it has one."""
-    friction = muscle.friction
-    own: dict[str, Any] = {} if friction is None else {"on": friction, "switch": "friction, as given", "assumed": False}
-    return [attrs.evolve(one, **own) if one.field == "friction" else one for one in effects]
+    """The effects, with the muscle's own friction where it has one, and on its own dead length."""
+    own: dict[str, dict[str, Any]] = {}
+    if muscle.friction is not None:
+        own["friction"] = {"on": muscle.friction, "switch": "friction, as given", "assumed": False}
+    dead = None if muscle.fittings is None else muscle.fittings.dead_length
+    if dead is not None:
+        own["fittings"] = {"on": Fittings(compliance=_COMPLIANCE, dead_length=dead), "off": Fittings(dead_length=dead)}
+    return [attrs.evolve(one, **own.get(one.field, {})) for one in effects]
 
 
 def _timed(muscle: Muscle, held: dict[str, float]) -> tuple[State, float]:

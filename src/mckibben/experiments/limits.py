@@ -129,10 +129,9 @@ def _value(name: str, value: Any) -> float:
 
 
 def _shorten(bench: Bench, pressure: float, shapes: bool) -> BranchEnd:
-    """From the initial length towards a tenth of it."""
-    start = Held.of(length=float(bench.p.H0), pressure=pressure)
-    target = Held.of(length=0.1 * float(bench.p.H0), pressure=pressure)
-    middle = Held.of(length=0.55 * float(bench.p.H0), pressure=pressure)
+    """From the initial length to where the braid has a tenth of its own."""
+    H0, dead = float(bench.p.H0), float(bench.p.rest - bench.p.H0)
+    start, middle, target = (Held.of(length=share * H0 + dead, pressure=pressure) for share in (1.0, 0.55, 0.1))
     return branch_end(bench.problem(SIZE, bench.placement(middle)), start, target, 1e-10, shapes)
 
 
@@ -142,7 +141,7 @@ def _force_extremum(bench: Bench, pressure: float, end: BranchEnd) -> tuple[floa
         return np.nan, np.nan
     problem, state = end.last.state.problem, end.last.state
     forces, lengths = [state.force], [state.length]
-    for length in np.linspace(state.length, float(bench.p.H0), 41)[1:]:
+    for length in np.linspace(state.length, float(bench.p.rest), 41)[1:]:
         state = find(problem, Held.of(length=float(length), pressure=pressure), state, radius=0.3)
         forces.append(state.force)
         lengths.append(state.length)

@@ -91,7 +91,7 @@ def placement(p: Parameters, steps: tuple[Step, ...]) -> Number:
     rows = []
     for step in steps:
         known = {name: getattr(step, name).waypoints for name in step.controls}
-        none = () if known.get("length") or known.get("force") else (p.H0,)
+        none = () if known.get("length") or known.get("force") else (p.rest,)
         for h in known.get("length") or none or (jnp.nan,):
             for F in known.get("force") or (jnp.nan,):
                 rows += [jnp.stack([jnp.asarray(x, float) for x in (h, F, P)]) for P in known.get("pressure") or (0.0,)]

@@ -108,18 +108,18 @@ def _prepare(basis: Basis, p: Parameters, steps: tuple[Step, ...]) -> None:
 
 def crowding_for(bench: Bench, steps: tuple[Step, ...]) -> float:
     """Point placement that serves the whole test."""
-    rows = [row for step in steps for row in corners(step, float(bench.p.H0), NEARLY * bench.longest)]
+    rows = [row for step in steps for row in corners(step, float(bench.p.rest), NEARLY * bench.longest)]
     return crowding(bench.p, *np.array(rows).T)
 
 
-def corners(step: Step, H0: float, longest: float) -> list[tuple[float, float, float]]:
+def corners(step: Step, rest: float, longest: float) -> list[tuple[float, float, float]]:
     """(length, force, pressure) at the ends of what a step holds; NaN for a length or force that is not held."""
     known = {name: np.asarray(getattr(step, name).waypoints, float) for name in step.controls}
     known = {name: values for name, values in known.items() if len(values)}
     lengths = np.minimum(known.get("length", np.full(1, np.nan)), longest)
     forces, pressures = known.get("force", np.full(1, np.nan)), known.get("pressure", np.zeros(1))
     if np.isnan(lengths).all() and np.isnan(forces).all():
-        lengths = np.array([H0])
+        lengths = np.array([rest])
     return [(h, F, P) for h in lengths for F in forces for P in pressures]
 
 
@@ -167,7 +167,7 @@ def _walk(
     """The states of one step, by the way it asks for."""
     names: tuple[str, ...] = tuple(str(name) for name in step.controls)
     if step.gas is not None:  # what is in the muscle as the step begins stays in it
-        start = find(problem, Held.of(length=float(problem.p.H0), pressure=0.0)) if here is None else here
+        start = find(problem, Held.of(length=float(problem.p.rest), pressure=0.0)) if here is None else here
         names, here = (*names, str(step.gas)), start
         amount = readings(start, (step.gas,))[0]
         wanted = np.concatenate([wanted, np.full((len(wanted), 1), amount)], axis=1)

@@ -20,7 +20,7 @@ def textbook_force(muscle: Muscle, *, length: Any, pressure: Any) -> np.ndarray:
     variables: F = pi R0^2/cos^2(theta0) (3 sin^2(theta) - 1) P, with theta the braid angle at the length.
 
     Args:
-        muscle: the specification, of which only the braid's radius, length and angle matter.
+        muscle: the specification, of which only the braid's radius, length and angle matter, and a dead length.
         length: distance between the fittings [m]: a number or text with a unit, or an array of numbers.
         pressure: gauge pressure [Pa], likewise; the two are broadcast.
 
@@ -40,8 +40,8 @@ def textbook_force(muscle: Muscle, *, length: Any, pressure: Any) -> np.ndarray:
     """
     p = parameters(muscle)
     h, P = np.broadcast_arrays(_numbers("length", length, "m"), _numbers("pressure", pressure, "Pa"))
-    reached = h * np.sin(float(p.theta0)) < float(p.H0)
-    theta = cylinder_angle(np.where(reached, h, float(p.H0)), p)
+    reached = p.active(h) * np.sin(float(p.theta0)) < float(p.H0)
+    theta = cylinder_angle(np.where(reached, h, float(p.rest)), p)
     return np.where(reached, np.asarray(virtual_work_force(theta, P, p)), np.nan)
 
 

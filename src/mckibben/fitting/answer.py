@@ -63,7 +63,7 @@ class Fit(Fitted):
         """
         curve = run(self.muscle, test, tolerance=tolerance)
         own = [k for k, name in enumerate(self.numbers) if not name.startswith("offset.")]
-        free = tuple(self._free(k) for k in own)
+        free = tuple(self.free[k] for k in own)
         points = np.stack([curve.length, curve.pressure], axis=1)
         error = np.full(len(points), np.nan)
         good = np.isfinite(points).all(axis=1) & np.isfinite(curve.force)
@@ -78,10 +78,11 @@ class Fit(Fitted):
                 error[good] = np.sqrt(np.einsum("nk,kl,nl->n", slopes, covariance, slopes))
         return Prediction(curve, error)
 
-    def _free(self, k: int) -> Free:
-        row = {name: float(self.data[name].values[k]) for name in NUMBERS}
-        unit = str(self.data["unit"].values[k])
-        return Free(self.numbers[k], unit, row["from"], row["to"], row["value"])
+    @property
+    def free(self) -> tuple[Free, ...]:
+        """The numbers with their ranges, and the best values for a start."""
+        columns = zip(*(self.data[name].values.tolist() for name in ("unit", "from", "to", "value")), strict=True)
+        return tuple(Free(name, *of) for name, of in zip(self.numbers, columns, strict=True))
 
 
 def answer(

@@ -34,8 +34,8 @@ CORRECTIONS = 8
 """Newton systems at most for a state."""
 BLOCK = 32
 """Points in step, at most."""
-CLOSE = 1e-6
-"""Last Newton step [rad], at most; the error that is left is about its square."""
+CLOSE = 1e-9
+"""Last Newton step [rad], at most: the error of the derivatives, which are those of the state before it."""
 LARGEST_CHANGE = 0.6
 """Largest change of psi [rad] from the state that was near which is trusted to be on the same branch."""
 

@@ -9,11 +9,12 @@ import numpy as np
 
 from mckibben.compiled.arrays import Array
 from mckibben.compiled.kernel import kernel
+from mckibben.measure.signs import after, strong
 from mckibben.model.cylinder import cylinder_angle, cylinder_force
 from mckibben.model.kinematics import radius
 from mckibben.model.parameters import Number, Parameters, parameters
 from mckibben.model.point import Point
-from mckibben.model.wall import chamber_pull, contact_pressure
+from mckibben.model.wall import chamber_pull, chamber_stretches, contact_pressure
 from mckibben.model.wrinkling import wrinkling
 from mckibben.spec import Muscle, SpecError, Step
 from mckibben.units import show
@@ -35,22 +36,14 @@ class MuscleWarning(UserWarning):
 
 THICK_WALL = 0.2
 """Wall over radius above which a thin wall is a coarse assumption: stretches vary by about this much across it."""
-STRONG = 1e7
-"""Pressure [Pa] above what built muscles hold; hydraulic ones work up to some 50 bar."""
-TOUCHING = 1.0
-"""Pull between chamber and mesh [Pa] below which it is a rounding error."""
-SLENDER = 5.0
-"""Length over diameter above which a muscle in compression may bow like a column."""
-
-Columns = dict[str, np.ndarray]
 
 
 def cautions(muscle: Muscle, *, length: Any, pressure: Any) -> tuple[str, ...]:
     """Cautions about a target before anything is solved, by the uniform cylinder of that length that does not stretch.
 
-    Thick wall, wrinkling, jammed fibres, a column in compression, fibre tension above the breaking force if one is
-    given, a pressure above 100 bar, and one too low for a chamber inside the braid to touch it. A result carries the
-    cautions of its own states.
+    Thick wall, wrinkling, jammed fibres, a column that bows, fibre tension above the breaking force if one is given, a
+    pressure above 100 bar, and of a chamber inside the braid a pressure too low for it to touch the braid, or so high
+    that it bulges through between the fibres. A result carries the cautions of its own states.
 
     Args:
         muscle: the specification.
@@ -72,7 +65,8 @@ def cautions(muscle: Muscle, *, length: Any, pressure: Any) -> tuple[str, ...]:
         raise SpecError("cautions", allowed="length and pressure must be one value each")
     h, P = (float(getattr(step, name).waypoints[0]) for name in ("length", "pressure"))
     p = parameters(muscle)
-    if p.endless and h * math.sin(muscle.braid.angle) >= muscle.braid.length:  # no such cylinder: a result tells more
+    longest = muscle.braid.length / math.sin(muscle.braid.angle)
+    if p.endless and float(p.active(h)) >= longest:  # no such cylinder: a result tells more
         return (*thick_wall(muscle), *strong({"length": np.array([h]), "pressure": np.array([P])}))
     cylinder = predicted(p, np.asarray(h), np.asarray(P))
     force = float(cylinder.force)
@@ -82,6 +76,7 @@ def cautions(muscle: Muscle, *, length: Any, pressure: Any) -> tuple[str, ...]:
         "r": cylinder.r,
         "fibre_tension": cylinder.pull,
         "contact_pressure": cylinder.contact,
+        "stretch_thickness": cylinder.thickness,
     }
     fields = {name: np.array([[float(value)]]) for name, value in of.items()}
     return (*before(muscle, h, P), *after(muscle, steps, fields))
@@ -97,6 +92,7 @@ class Predicted(NamedTuple):
     force: Number  #: [N]
     pull: Number  #: tension of a fibre [N]
     contact: Number  #: pressure of the chamber on the mesh [Pa]
+    thickness: Number  #: stretch of the wall's thickness
 
 
 @partial(kernel, static_argnums=())
@@ -106,7 +102,8 @@ def predicted(p: Parameters, length: Array, pressure: Array) -> Predicted:
     at, force = Point.cylinder(theta), cylinder_force(theta, pressure, p)
     r = radius(at, p)
     pull = (force + jnp.pi * r**2 * pressure - chamber_pull(at, p)) / (p.N * jnp.sin(theta))
-    return Predicted(*wrinkling(length, pressure, p), theta, r, force, pull, contact_pressure(at, pressure, p))
+    contact, thickness = contact_pressure(at, pressure, p), chamber_stretches(at, p)[2]
+    return Predicted(*wrinkling(length, pressure, p), theta, r, force, pull, contact, thickness)
 
 
 def before(muscle: Muscle, length: float | None, pressure: float) -> list[str]:
@@ -138,69 +135,3 @@ def thick_wall(muscle: Muscle) -> list[str]:
             'without wall = "thick"'
         ]
     return [f"chamber.thickness is {ratio:.2f} of the radius: the model takes the wall as thin (below {THICK_WALL:g})"]
-
-
-def after(muscle: Muscle, steps: Columns, fields: Columns) -> list[str]:
-    """Cautions that a result gives rise to: jamming, column buckling, broken fibres, pressure, dead zone."""
-    found = [*jamming(muscle, steps, fields), *column(steps, fields), *breaking(muscle, steps, fields), *strong(steps)]
-    return [*found, *apart(muscle, steps, fields)]
-
-
-def jamming(muscle: Muscle, steps: Columns, fields: Columns) -> list[str]:
-    """Neighbouring fibres of one hand come to touch: (N/2) d against 2 pi r sin(theta)."""
-    fibre = muscle.braid.fibre
-    if fibre.diameter is None:
-        return []
-    room = 2.0 * np.pi * fields["r"] * np.sin(fields["theta"]) / (0.5 * muscle.braid.fibres * fibre.diameter)
-    return _first((room < 1.0).any(axis=1), steps, "neighbouring fibres touch: the braid jams, which the model ignores")
-
-
-def column(steps: Columns, fields: Columns) -> list[str]:
-    """A slender muscle in compression may bow sideways, which an axisymmetric model cannot."""
-    slender = steps["length"] > SLENDER * 2.0 * np.nanmin(np.where(np.isnan(fields["r"]), np.inf, fields["r"]), axis=1)
-    said = f"compressed and longer than {SLENDER:g} diameters: it may bow like a column, which the model ignores"
-    return _first(slender & (steps["force"] < 0.0), steps, said)
-
-
-def breaking(muscle: Muscle, steps: Columns, fields: Columns) -> list[str]:
-    """Fibre tension above the breaking force that was given."""
-    strength = muscle.braid.fibre.breaking_force
-    if strength is None:
-        return []
-    said = f"the fibre tension exceeds the breaking force of {show(strength, 'N', 4)}"
-    return _first((fields["fibre_tension"] > strength).any(axis=1), steps, said)
-
-
-def apart(muscle: Muscle, steps: Columns, fields: Columns) -> list[str]:
-    """A chamber inside the braid that would not touch it; the paper's is part of the mesh and has no such states."""
-    if muscle.chamber is None or not muscle.chamber.inside:
-        return []
-    least = fields["contact_pressure"].min(axis=1)
-    states = np.flatnonzero(least < -TOUCHING)
-    if not len(states):
-        return []
-    k = int(states[0])
-    more = f" and {len(states) - 1} more" if len(states) > 1 else ""
-    touches = show(float(steps["pressure"][k] - least[k]), "Pa", 3)
-    return [
-        f"state {k} ({_place(steps, k)}){more}: the chamber would not touch the braid everywhere (dead zone), and the "
-        f"model holds the two together; in the shape of state {k} it touches from about {touches}"
-    ]
-
-
-def strong(steps: Columns) -> list[str]:
-    """A pressure that no muscle was built for, so that most likely the unit is wrong."""
-    said = f"the pressure is above {show(STRONG, 'Pa')}, more than built muscles hold; the model knows no bursting"
-    return _first(steps["pressure"] > STRONG, steps, said)
-
-
-def _first(hit: Any, steps: Columns, said: str) -> list[str]:
-    states = np.flatnonzero(hit)
-    if not len(states):
-        return []
-    k = int(states[0])
-    return [f"from state {k} ({_place(steps, k)}) on: {said}"]
-
-
-def _place(steps: Columns, k: int) -> str:
-    return f"{show(float(steps['length'][k]), 'm', 4)}, {show(float(steps['pressure'][k]), 'Pa', 4)}"

@@ -73,6 +73,7 @@ def read(basis: Basis, on: Placed, state: Unknowns, kept: Any = None) -> Reading
     parts = [jnp.sum(weights * density) for density in densities]
     length, volume = jnp.sum(weights * rate), jnp.sum(weights * swept)
     length = length if inner.give is None else length + jnp.sum(weights * inner.give)
+    length = length if p.dead is None else length + p.dead
     inner_costates, outer_costates = costates(basis, on, inner, (F, P, M), sampling, memory)
     q = len(weights)
     points, pulls, memories = jax.tree.map(
@@ -87,7 +88,7 @@ def read(basis: Basis, on: Placed, state: Unknowns, kept: Any = None) -> Reading
     extremes = jnp.stack([everywhere[name][:q] for name in ("fibre_tension", "r")])
     tallest = jax.vmap(lambda field: peak(field, basis.harmonics()))(extremes)
     numbers = {
-        "length": length, "contraction": 1.0 - length / p.H0, "force": F, "pressure": P, "volume": volume,
+        "length": length, "contraction": 1.0 - length / p.rest, "force": F, "pressure": P, "volume": volume,
         **{f"energy_{name}": part for name, part in zip(names, parts, strict=True)}, "energy": sum(parts),
         "peak_fibre_tension": tallest[0], "largest_radius": tallest[1],
         "air_volume": volume if p.tube is None else volume - p.tube.rubber,

@@ -8,9 +8,9 @@ from typing import Any
 import attrs
 import numpy as np
 
-from mckibben.measure.caution import after
 from mckibben.measure.judge import Judgement
 from mckibben.measure.read import ENERGIES, NODES
+from mckibben.measure.signs import after
 from mckibben.measure.survey import Survey
 from mckibben.measure.work import work
 from mckibben.results.result import Result, Table, about

@@ -25,18 +25,19 @@ def cylinder_force(theta: Number, pressure: Number, p: Parameters) -> Number:
 
 
 def cylinder_length(theta: Number, p: Parameters) -> Number:
-    """Length [m] of the cylinder at braid angle theta [rad]."""
-    return p.H0 * jnp.sin(theta) / jnp.sin(p.theta0)
+    """Length [m] between the fittings of the cylinder at braid angle theta [rad]."""
+    active = p.H0 * jnp.sin(theta) / jnp.sin(p.theta0)
+    return active if p.dead is None else active + p.dead
 
 
 def cylinder_angle(length: Number, p: Parameters) -> Number:
-    """Braid angle [rad] of the cylinder of a given length [m]; 90 deg at and beyond full extension."""
-    return jnp.arcsin(jnp.clip(length / p.H0 * jnp.sin(p.theta0), 0.0, 1.0))
+    """Braid angle [rad] of the cylinder of a length between the fittings [m]; 90 deg at and beyond full extension."""
+    return jnp.arcsin(jnp.clip(p.active(length) / p.H0 * jnp.sin(p.theta0), 0.0, 1.0))
 
 
 def cylinder_volume(theta: Number, p: Parameters) -> Number:
     """Enclosed volume [m^3] of the cylinder; largest at the magic angle arctan(1/sqrt 2) (Fig. 1)."""
-    return jnp.pi * radius(Point.cylinder(theta), p) ** 2 * cylinder_length(theta, p)
+    return jnp.pi * radius(Point.cylinder(theta), p) ** 2 * p.active(cylinder_length(theta, p))
 
 
 def end_layer(theta: Number, tension: Number, p: Parameters) -> Number:

@@ -52,6 +52,7 @@ def remember(at: Point, p: Parameters, memory: Any) -> Any:
 def works(at: Point, p: Parameters) -> tuple[Number, Number, Number]:
     """Densities per unit v of length, volume and closure, on whose change the `LOADS` do work."""
     height = height_rate(at, p) if at.give is None else height_rate(at, p) + at.give
+    height = height if p.dead is None else height + p.dead / p.H0
     return height, volume_rate(at, p), closure_rate(at, p)
 
 
@@ -62,7 +63,7 @@ def lagrangian(at: Point, p: Parameters, F: Number, P: Number, M: Number = 0.0, 
 
 
 def scales(p: Parameters) -> Array:
-    """Units that make the quantities of order one: a characteristic energy [J], H0 [m], V0 [m^3] and 1 rad."""
+    """Units that make the quantities of order one: a characteristic energy [J], rest length [m], V0 [m^3] and 1 rad."""
     modulus = jax.grad(jax.grad(lambda t: chamber_density(Point.cylinder(p.theta0 + t), p)))(0.0)
     energy = p.H0 * (p.N * (p.B1 + p.B2 + p.B3) / p.R0**2 + jnp.abs(modulus))
-    return jax.lax.stop_gradient(jnp.stack([energy, p.H0, jnp.pi * p.R0**2 * p.H0, jnp.ones_like(p.H0)]))
+    return jax.lax.stop_gradient(jnp.stack([energy, p.rest, jnp.pi * p.R0**2 * p.H0, jnp.ones_like(p.H0)]))

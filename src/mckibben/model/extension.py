@@ -19,19 +19,22 @@ LONG = 25.0
 def longest(muscle: spec.Muscle) -> float:
     """Longest admissible length [m] of a muscle; infinite where its fibres stretch or its fittings give way."""
     braid = muscle.braid
-    if braid.fibre.stretch or muscle.fittings is not None:
+    if braid.fibre.stretch or muscle.gives_way:
         return math.inf
-    return full_extension(float(braid.radius), float(braid.length), float(braid.angle), str(muscle.ends))
+    active = full_extension(float(braid.radius), float(braid.length), float(braid.angle), str(muscle.ends))
+    return active + float(muscle.rest_length - braid.length)
 
 
 def longest_of(p: "Parameters", ends: str) -> float:
     """The same from a muscle's numbers."""
-    return math.inf if p.endless else full_extension(float(p.R0), float(p.H0), float(p.theta0), ends)
+    if p.endless:
+        return math.inf
+    return full_extension(float(p.R0), float(p.H0), float(p.theta0), ends) + float(p.rest - p.H0)
 
 
 @lru_cache(maxsize=256)
 def full_extension(R0: Number, H0: Number, theta0: Number, ends: str) -> float:
-    """Longest admissible length [m] of a muscle of radius R0 [m], length H0 [m] and angle theta0 [rad from parallels].
+    """Longest admissible length [m] of a braid of radius R0 [m], length H0 [m] and angle theta0 [rad from parallels].
 
     Free ends: H0/sin(theta0), the length of a fibre. Ends held at R0 (clamped or pinned) keep the fibres from becoming
     straight. With x = cos(theta) and the fibre's arc length in units of R0/cos(theta0), the length is the integral of

@@ -66,11 +66,21 @@ class Parameters(NamedTuple):
     compliance: Any = None  #: of both fittings together [m/N]; None where they are rigid
     stiffening: Any = None  #: `spec.Stiffening` of the fibres, None for the paper's quadratic energy
     friction: Any = None  #: `Rubbing` where crossings rub, None where they turn freely
+    dead: Any = None  #: length under both fittings that neither shortens nor lengthens [m]; None where there is none
 
     @property
     def endless(self) -> bool:
         """Whether no length is too long: the fibres stretch, or the fittings give way."""
         return self.EA is not None or self.compliance is not None
+
+    @property
+    def rest(self) -> Number:
+        """Length between the fittings as made [m]: of the braid, and what lies dead under them."""
+        return self.H0 if self.dead is None else self.H0 + self.dead
+
+    def active(self, length: Number) -> Number:
+        """What the braid takes [m] of a length between the fittings."""
+        return length if self.dead is None else length - self.dead
 
 
 def parameters(muscle: Muscle) -> Parameters:
@@ -85,7 +95,7 @@ def _array(value: Number) -> Number:
 
 def numbers(muscle: Muscle) -> Parameters:
     """Numbers of a muscle as they are in its specification, floats or traced."""
-    braid, fibre, chamber = muscle.braid, muscle.braid.fibre, muscle.chamber
+    braid, fibre, chamber, fittings = muscle.braid, muscle.braid.fibre, muscle.chamber, muscle.fittings
     B1, B2, B3 = fibre.stiffnesses
     tube = None if chamber is None else _tube(chamber, braid)
     area = 0.0 * braid.radius if chamber is None else chamber.area(braid.radius)
@@ -97,9 +107,10 @@ def numbers(muscle: Muscle) -> Parameters:
         tube,
         fibre.EA,
         (1.0 if fibre.slack else 0.0) if fibre.stretch else None,
-        None if muscle.fittings is None else muscle.fittings.compliance,
+        None if fittings is None else fittings.compliance,
         fibre.stiffening,
         _rubbing(muscle),
+        None if fittings is None else fittings.dead_length,
     )  # fmt: skip
 
 

@@ -87,7 +87,7 @@ OPTIONAL: dict[str, Callable[[Muscle], bool]] = {
     "energy_stretch": lambda muscle: muscle.braid.fibre.stretch,
     "fibre_stretch": lambda muscle: muscle.braid.fibre.stretch,
     "density_stretch": lambda muscle: muscle.braid.fibre.stretch,
-    "energy_fittings": lambda muscle: muscle.fittings is not None,
+    "energy_fittings": lambda muscle: muscle.gives_way,
     "roll": lambda muscle: muscle.braid.joint == Joint.PIN,
     "energy_crossings": lambda muscle: muscle.friction is not None,
     "dissipated": lambda muscle: muscle.friction is not None,

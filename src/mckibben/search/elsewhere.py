@@ -46,7 +46,7 @@ def way_there(bench: Bench, held: Held, b: float, tolerance: float, roughly: boo
     axial = next((name for name in ("length", "force") if name in held.names), None)
     if axial is None or "pressure" not in held.names:
         return None
-    first = Held.of(**{axial: float(bench.p.H0) if axial == "length" else 0.0, "pressure": held.get("pressure")})
+    first = Held.of(**{axial: float(bench.p.rest) if axial == "length" else 0.0, "pressure": held.get("pressure")})
     end: BranchEnd | None = None
     for size, share in REFINED:
         end = branch_end(bench.problem(size, b), first, held, share, coarse=end)

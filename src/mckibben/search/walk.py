@@ -165,8 +165,9 @@ def branch_end(
 def _by_length(walk: _Walk, first: Equilibrium) -> _Walk:
     """The walk to a force as one to a length: stable under force control, a muscle is shorter the more it is pushed."""
     p, force = walk.problem.p, walk.target.get("force")
-    longest = min(longest_of(p, walk.problem.basis.ends), FAR * float(p.H0) / math.sin(float(p.theta0)))
-    far = 0.1 * float(p.H0) if force < first.force else first.length + (1.0 - 1e-6) * (longest - first.length)
+    dead, H0 = float(p.rest - p.H0), float(p.H0)
+    longest = min(longest_of(p, walk.problem.basis.ends), FAR * H0 / math.sin(float(p.theta0)) + dead)
+    far = 0.1 * H0 + dead if force < first.force else first.length + (1.0 - 1e-6) * (longest - first.length)
     pressure = walk.target.get("pressure")
     lengths = [Held.of(length=length, pressure=pressure) for length in (first.length, far)]
     return attrs.evolve(walk, start=lengths[0], target=lengths[1], force=force)

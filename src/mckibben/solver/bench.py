@@ -53,15 +53,15 @@ class Bench:
         """The discretisation."""
         if discretisation != "paper":
             return attrs.evolve(self.line, size=size, modes=modes)
-        if self.line.stretch or self.line.roll:
-            said = "is the paper's own mesh, whose fibres neither stretch nor roll"
+        if self.line.stretch or self.line.roll or self.line.give:
+            said = "is the paper's own mesh, whose fibres neither stretch nor roll, in fittings that do not give way"
             raise SpecError("discretisation", discretisation, said, 'use "spectral", or leave the effect out')
         return Spline(size, self.ends)
 
     def placement(self, held: Held) -> float:
         """Crowding of points for one state."""
         force, pressure = held.get("force", np.nan), held.get("pressure", 0.0)
-        length = min(held.get("length", float(self.p.H0) if np.isnan(force) else np.nan), NEARLY * self.longest)
+        length = min(held.get("length", float(self.p.rest) if np.isnan(force) else np.nan), NEARLY * self.longest)
         return crowding(self.p, np.array([length]), np.array([force]), np.array([pressure]))
 
     def too_long(self) -> str:

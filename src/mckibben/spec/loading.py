@@ -199,7 +199,7 @@ def _in_lengths(step: Step, muscle: Muscle) -> Step:
         raise SpecError("step.gas", str(step.gas), said, 'hold pressure or volume, or let the wall lie "outside"')
     if step.length is None or step.length.unit == "m":
         return step
-    return evolved(step, length=lengths(step.length, muscle.braid.length))
+    return evolved(step, length=lengths(step.length, muscle.rest_length))
 
 
 @takes_contraction
@@ -305,7 +305,7 @@ class BlockedForce:
 
     Args:
         pressure: gauge pressure [Pa]: a ramp such as "0 to 1 bar", a list, or one value.
-        length: distance between the fittings [m], one value; by default the length H0 of the braid as made. Or
+        length: distance between the fittings [m], one value; by default that of the muscle as made. Or
             contraction="10 %" in its place, 1 - h/H0.
         points: number of states; by default 21 on a ramp, as many as a list has, 1 for one value.
 
@@ -326,7 +326,7 @@ class BlockedForce:
         _settle_points(self)
 
     def as_steps(self, muscle: Muscle) -> tuple[Step, ...]:
-        length = Path((muscle.braid.length,), unit="m") if self.length is None else self.length
+        length = Path((muscle.rest_length,), unit="m") if self.length is None else self.length
         return (_in_lengths(Step(length=length, pressure=self.pressure, points=self.points), muscle),)
 
 

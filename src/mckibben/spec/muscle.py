@@ -19,7 +19,7 @@ from mckibben.spec.fields import choice, count, part, quantity, spec, words
 from mckibben.spec.fittings import Fittings
 from mckibben.spec.friction import Friction, check_friction
 from mckibben.spec.limits import check_angle, check_muscle
-from mckibben.units import is_traced, show
+from mckibben.units import Number, is_traced, show
 
 __all__ = ["Braid", "Joint", "Muscle"]
 
@@ -48,7 +48,7 @@ class Braid:
 
     Args:
         radius: radius R0 of the fibres' centre lines [m].
-        length: length H0 between the fittings [m].
+        length: length H0 between the fittings [m]; what lies dead under them is not part of it (`Fittings`).
         angle: braid angle theta0 [rad], above 0 and below 90 deg, between a fibre and the parallels (the circles around
             the tube). Above 35.26 deg a long muscle contracts under pressure, below it extends (Eq. 31).
         fibres: number N of fibres, both hands together: even.
@@ -73,8 +73,9 @@ class Braid:
         source="Eq. (11)", doubt=(1.0, 1e3),
     )  # fmt: skip
     length: Reads[float] = quantity(
-        "m", meaning="length H0 between the fittings", low=0.0, low_open=True, size=(1e-6, 1e3), doubt=(10.0, 1e4)
-    )
+        "m", meaning="length H0 of the braid between the fittings", low=0.0, low_open=True, size=(1e-6, 1e3),
+        doubt=(10.0, 1e4),
+    )  # fmt: skip
     angle: Reads[float] = quantity(
         "rad", meaning="braid angle theta0 between fibres and parallels", low=0.0, low_open=True, high=math.pi / 2.0,
         high_open=True, source="Eq. (11)",
@@ -143,7 +144,7 @@ class Muscle:
         braid: the tube of fibres, a `Braid`.
         chamber: the elastomer tube, a `Chamber`, or None for a bare braid.
         ends: what the fittings hold, one of `Ends`: "clamped" (default), "pinned" or "free".
-        fittings: `Fittings` that give way, or None for rigid ones.
+        fittings: `Fittings` that give way or hide a dead length, or None for neither.
         friction: `Friction` where fibres cross, or None for the paper's, which turn freely.
         name: a name for people, shown in tables and files.
         assumed: names of the fields ("braid.fibres") whose values are assumptions; tables, pictures and files mark
@@ -164,7 +165,7 @@ class Muscle:
     chamber: Chamber | None = part(Chamber, meaning="the elastomer tube, none for a bare braid", default=None)
     ends: Reads[Ends] = choice(Ends, meaning="what the fittings hold", default=Ends.CLAMPED)
     fittings: Fittings | None = part(
-        Fittings, meaning="fittings that give way, none for rigid ones", default=None, quiet=True
+        Fittings, meaning="what the fittings add in series, none for nothing", default=None, quiet=True
     )
     friction: Friction | None = part(Friction, meaning="friction where fibres cross", default=None, quiet=True)
     name: str | None = words(meaning="a name for people", default=None)
@@ -185,6 +186,17 @@ class Muscle:
     def __remark__(self) -> str:
         """What the braid angle means."""
         return self.braid.__remark__()
+
+    @property
+    def rest_length(self) -> Number:
+        """Length between the fittings as made [m]: H0 of the braid, and the dead length of the fittings."""
+        dead = None if self.fittings is None else self.fittings.dead_length
+        return self.braid.length if dead is None else self.braid.length + dead
+
+    @property
+    def gives_way(self) -> bool:
+        """Whether the fittings give way."""
+        return self.fittings is not None and self.fittings.compliance is not None
 
     def replace(self, field: str, value: Any) -> Muscle:
         """A new muscle with one field changed: muscle.replace("braid.angle", "36 deg").

@@ -1,10 +1,10 @@
 """Named muscles. Every value has a source; values that are assumptions are named in `muscle.assumed`.
 
 `paper()` is the muscle of Quaglierini, Arroyo and DeSimone (RoboSoft 2023), `reference()` the one whose results were
-computed with two independent codes.
+computed with two independent codes. The others are families that are sold or made at home: `get` them by name.
 
->>> mk.presets.names()
-('paper', 'reference')
+>>> mk.presets.names()[:5]
+('paper', 'reference', 'festo-dmsp-10', 'festo-dmsp-20', 'festo-dmsp-40')
 >>> mk.presets.paper().replace("braid.fibres", 40).name
 'paper (changed)'
 """
@@ -13,13 +13,14 @@ from __future__ import annotations
 
 from collections.abc import Callable
 
+from mckibben.spec.catalogue import CATALOGUE, assumed_in
 from mckibben.spec.chamber import Chamber
 from mckibben.spec.errors import SpecError, nearest
 from mckibben.spec.fibre import Fibre
 from mckibben.spec.laws import MooneyRivlin
 from mckibben.spec.muscle import Braid, Muscle
 
-__all__ = ["get", "names", "paper", "reference", "sources"]
+__all__ = ["about", "get", "names", "paper", "reference", "sources"]
 
 _PAPER = "printed: Quaglierini, Arroyo and DeSimone, RoboSoft 2023, section III"
 _COUNT = "assumed: common factor of the element counts 13,048 and 14,728 in Hassan et al. 2019"
@@ -84,7 +85,7 @@ def paper() -> Muscle:
         chamber=Chamber(thickness="1 mm", law=MooneyRivlin(c1="8.5 kPa", c2=0.0)),
         ends="clamped",
         name="paper",
-        assumed=tuple(field for field, source in _SOURCES["paper"].items() if source.startswith("assumed")),
+        assumed=assumed_in(_SOURCES["paper"]),
     )  # fmt: skip
 
 
@@ -116,19 +117,21 @@ def reference() -> Muscle:
 
 
 _PRESETS: dict[str, Callable[[], Muscle]] = {"paper": paper, "reference": reference}
+_PRESETS |= {name: entry.make for name, entry in CATALOGUE.items()}
+_SOURCES |= {name: entry.sources for name, entry in CATALOGUE.items()}
 
 
 def names() -> tuple[str, ...]:
     """The names of all presets.
 
     Returns:
-        A tuple of names that `get` and `sources` take.
+        A tuple of names that `get`, `about` and `sources` take.
 
     Raises:
         Nothing.
 
-    >>> mk.presets.names()
-    ('paper', 'reference')
+    >>> mk.presets.names()[-4:]
+    ('pet-3', 'pet-6', 'pet-10', 'pet-12')
     """
     return tuple(_PRESETS)
 
@@ -150,6 +153,25 @@ def get(name: str) -> Muscle:
     """
     _check(name)
     return _PRESETS[name]()
+
+
+def about(name: str) -> str:
+    """What a preset is, in a line, with the pressure that it is meant for where one is known or assumed.
+
+    Args:
+        name: one of `names()`.
+
+    Returns:
+        A sentence without its full stop.
+
+    Raises:
+        SpecError: with the nearest name if there is no preset called so.
+
+    >>> mk.presets.about("pet-10")
+    'home-made: PET sleeving of 10 mm on a tube of 8 x 6 mm; up to 3 bar (assumed)'
+    """
+    _check(name)
+    return CATALOGUE[name].about if name in CATALOGUE else (_PRESETS[name].__doc__ or "").partition("\n")[0].rstrip(".")
 
 
 def sources(name: str) -> dict[str, str]:

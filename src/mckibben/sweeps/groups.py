@@ -28,6 +28,8 @@ NEAR_EXTENSION = 0.98
 """Share of a length surely below full extension from which on a design is solved singly."""
 FITS = 1.0 - 1e-9
 """Share of the room at which fibres certainly fit side by side."""
+_MAKE_THE_LENGTH = {"braid.length", "fittings.dead_length"}
+"""What the length between the fittings as made consists of."""
 
 
 @attrs.frozen
@@ -98,14 +100,15 @@ def _parts(value: Any) -> tuple[Any, tuple[float, ...]]:
 
 def _group(muscle: Muscle, test: Test, values: dict[str, np.ndarray], index: np.ndarray) -> Group | None:
     """Designs like one, with some numbers (designs, how many) anew; those that are not certainly valid are left out."""
-    if isinstance(test, BlockedForce) and test.length is None and "braid.length" in values:
-        return None  # the length held is the braid's own
+    resized = not _MAKE_THE_LENGTH.isdisjoint(values)
+    if isinstance(test, BlockedForce) and test.length is None and resized:
+        return None  # the length held is the muscle's own
     relative = any(
         step.length is not None and step.length.unit != "m"
         for step in getattr(test, "steps", (test,))
         if hasattr(step, "length")
     )
-    if any(name.endswith(".contraction") for name in values) or (relative and "braid.length" in values):
+    if any(name.endswith(".contraction") for name in values) or (relative and resized):
         return None  # so it is here
     if muscle.friction is not None:
         return None  # each state depends on the one before, point by point
@@ -121,7 +124,7 @@ def _group(muscle: Muscle, test: Test, values: dict[str, np.ndarray], index: np.
     count = len(index)
     valid = np.broadcast_to(_valid(several), (count,))
     p: Parameters = jax.tree.map(lambda x: np.array(np.broadcast_to(np.asarray(x, float), (count,))), numbers(several))
-    present = {"length": p.H0, "force": np.zeros(count), "pressure": np.zeros(count)}
+    present = {"length": p.rest, "force": np.zeros(count), "pressure": np.zeros(count)}
     rows, corners = [], []
     for k, step in enumerate(steps):
         place = f"test.steps.{k}" if isinstance(test, Protocol) else "test"
@@ -188,7 +191,7 @@ def _corners(step: Step, held: tuple[str, ...], knots: dict[str, np.ndarray], p:
     forces = forces if len(forces) else none
     pressures = pressures if len(pressures) else np.zeros((1, count))
     if np.isnan(lengths).all() and np.isnan(forces).all():
-        lengths = p.H0[None]
+        lengths = p.rest[None]
     return np.array([[h, F, P] for h in lengths for F in forces for P in pressures]).transpose(2, 0, 1)
 
 
@@ -198,5 +201,6 @@ def surely_reached(p: Parameters, ends: str) -> np.ndarray:
     if p.endless:
         return np.full_like(fibre, np.inf)
     if ends == Ends.FREE:
-        return np.asarray(fibre)
-    return np.maximum(fibre - 2.0 * p.R0 / np.cos(p.theta0) * (1.0 - np.sin(p.theta0)), p.H0)
+        return np.asarray(fibre + (p.rest - p.H0))
+    held = np.maximum(fibre - 2.0 * p.R0 / np.cos(p.theta0) * (1.0 - np.sin(p.theta0)), p.H0)
+    return held + (p.rest - p.H0)

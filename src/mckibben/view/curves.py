@@ -123,7 +123,7 @@ def notes(figure: Figure, result: Result) -> None:
 
 
 def _length_axis(axes: Axes, result: Result) -> None:
-    H0 = float(style.shown(float(result.muscle.braid.length), "m"))
+    H0 = float(style.shown(float(result.muscle.rest_length), "m"))
 
     def to_length(contraction: Any) -> Any:
         return H0 * (1.0 - 0.01 * np.asarray(contraction))

@@ -23,7 +23,7 @@ def region(limits: xr.Dataset) -> Figure:
     pressure = style.shown(limits["pressure"].values, "Pa")
     shortest, longest = (style.shown(limits[name].values, "m") for name in ("shortest", "longest"))
     muscle = _muscle(limits)
-    known, made = np.isfinite(longest), np.nan if muscle is None else style.shown(muscle.braid.length, "m")
+    known, made = np.isfinite(longest), np.nan if muscle is None else style.shown(muscle.rest_length, "m")
     beyond = np.where(known, longest, ENDLESS * made)  # fibres that stretch set no limit
     label = "admissible and stable" + ("" if known.any() else ", with no longest length")
     axes.fill_betweenx(pressure, shortest, beyond, color=style.SKY, alpha=0.25, lw=0, label=label)
@@ -34,7 +34,7 @@ def region(limits: xr.Dataset) -> Figure:
     if known.any():
         axes.plot(longest, pressure, "--", color=style.VERMILLION, label="full extension")
     if muscle is not None:
-        axes.axvline(1e3 * muscle.braid.length, color="0.5", lw=0.8, label="initial length")
+        axes.axvline(1e3 * muscle.rest_length, color="0.5", lw=0.8, label="initial length")
         style.assumption_note(figure, muscle)
     axes.set_xlabel(style.axis_label("length", "m"))
     axes.set_ylabel(style.axis_label("pressure", "Pa"))

@@ -122,7 +122,7 @@ def _headed(figure: Figure, result: Result) -> Figure:
         steps = (", ".join(f"{name} {path}" for name, path in _paths(step).items()) for step in test.steps)
         held = "; ".join(f"{k} {said}" for k, said in enumerate(steps, 1))
     if isinstance(test, BlockedForce) and test.length is None:
-        held = f"length {show(result.muscle.braid.length, 'm')}"
+        held = f"length {show(result.muscle.rest_length, 'm')}"
     if isinstance(test, FreeContraction):
         held = "force 0 N"
     name = f'Muscle "{result.muscle.name}"' if result.muscle.name else "Muscle without a name"

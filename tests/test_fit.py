@@ -1,0 +1,287 @@
+"""Fits: exact derivatives, recovery of what is known, and honesty about what the data do not tell."""
+
+from typing import Any
+
+import numpy as np
+import pytest
+from numpy.testing import assert_allclose
+from scipy.stats import t as student
+
+import mckibben as mk
+from mckibben.fitting.free import Free, free_numbers
+from mckibben.fitting.misfit import Measured, Misfit
+from mckibben.fitting.search import least
+
+pytestmark = pytest.mark.experiments
+
+MUSCLE = mk.presets.paper()
+FREE = {"braid.angle": "35 deg to 39 deg", "chamber.law.c1": "2 kPa to 40 kPa"}
+START = MUSCLE.replace("braid.angle", "36 deg").replace("chamber.law.c1", "15 kPa")
+TURNED = MUSCLE.replace("braid.angle", "36 deg")
+"""Wrong in the angle alone."""
+ANGLE = {"braid.angle": FREE["braid.angle"]}
+PRESSURES = (4e4, 1e5)
+
+
+def curves(muscle: mk.Muscle, noise: float = 0.0, seed: int = 0, **more: Any) -> mk.Data:
+    """Two isobaric tests of a muscle, eight points each."""
+    found = [mk.run(muscle, mk.Isobaric(length="80 mm to 115 mm", pressure=P, points=8)) for P in PRESSURES]
+    force = np.concatenate([curve.force for curve in found])
+    force = force + noise * np.random.default_rng(seed).normal(size=len(force))
+    table = {"length [m]": np.concatenate([curve.length for curve in found]), "force [N]": force}
+    table["pressure [Pa]"] = np.concatenate([curve.pressure for curve in found])
+    return mk.read_data(table | more, tests="pressure")
+
+
+@pytest.fixture(scope="module")
+def exact() -> mk.Data:
+    return curves(MUSCLE)
+
+
+@pytest.fixture(scope="module")
+def noisy() -> mk.Data:
+    return curves(MUSCLE, noise=0.5, seed=1)
+
+
+def misfit_of(muscle: mk.Muscle, data: mk.Data, names: tuple[str, ...]) -> Misfit:
+    """Around a muscle's own numbers, a tenth to either side."""
+    known = {name: (float(number), unit) for name, number, unit in _numbers(muscle)}
+    free = tuple(
+        Free(name, known[name][1], 0.9 * known[name][0], 1.1 * known[name][0], known[name][0]) for name in names
+    )
+    offsets = (("length", "m", 1e-3), ("pressure", "Pa", 1e4), ("force", "N", 5.0))
+    more = tuple(Free(f"offset.{name}", unit, -size, size, 0.1 * size) for name, unit, size in offsets)
+    return Misfit(muscle, (*free, *more), Measured.of(muscle, (data,), {}), 24)
+
+
+def _numbers(muscle: mk.Muscle) -> list[tuple[str, float, str]]:
+    from mckibben.spec.declared import numbers
+
+    return [(name, float(number), declared.unit) for name, declared, number in numbers(muscle)]
+
+
+FIBRE = mk.Fibre(diameter="0.25 mm", E="3 GPa", nu=0.4, stretch=True, axial_stiffness="150 N")
+STRETCHING = MUSCLE.replace("braid.fibre", FIBRE).replace("fittings", mk.Fittings(compliance="0.01 mm/N"))
+
+
+@pytest.mark.parametrize(
+    ("muscle", "names"),
+    [
+        (MUSCLE, ("braid.radius", "braid.angle", "chamber.law.c1", "chamber.thickness", "braid.fibre.E")),
+        (STRETCHING, ("braid.angle", "braid.fibre.axial_stiffness", "fittings.compliance", "braid.length")),
+    ],
+    ids=["paper", "stretching"],
+)
+def test_derivatives(muscle: mk.Muscle, names: tuple[str, ...], exact: mk.Data) -> None:
+    """Of every force by every number and offset, against central differences of states that are sought anew."""
+    misfit = misfit_of(muscle, exact, names)
+    x = misfit.start
+    slopes, step = misfit(x).slopes, 1e-4
+    for k in range(len(x)):
+        there, back = (misfit(x + sign * step * (np.arange(len(x)) == k)).force for sign in (1.0, -1.0))
+        assert_allclose(slopes[:, k], (there - back) / (2.0 * step), rtol=1e-5, atol=1e-6 * np.abs(slopes[:, k]).max())
+
+
+def test_forces_are_those_of_a_run(exact: mk.Data) -> None:
+    misfit = misfit_of(MUSCLE, exact, ("braid.angle",))
+    at = misfit.start.copy()
+    at[1:] = 0.5  # no offsets
+    assert_allclose(misfit(at).force, exact.force, atol=2e-5 * exact.force.max())
+
+
+@pytest.fixture(scope="module")
+def found(noisy: mk.Data) -> mk.Fit:
+    return mk.fit(START, noisy, FREE, starts=4)
+
+
+def test_what_is_known_comes_back(exact: mk.Data) -> None:
+    """To the error of the forces themselves."""
+    fit = mk.fit(START, exact, FREE, starts=1)
+    assert fit.converged
+    assert_allclose(fit.values["braid.angle"], np.radians(37.0), rtol=1e-6)
+    assert_allclose(fit.values["chamber.law.c1"], 8500.0, rtol=1e-4)
+    assert fit.rms < 1e-4
+    assert fit.muscle.braid.angle == fit.values["braid.angle"]
+    assert "chamber.law.c2" in fit.muscle.assumed or not MUSCLE.assumed
+
+
+def test_noise(found: mk.Fit) -> None:
+    """The size of the noise, errors that cover the truth, and an rms that no other muscle near beats."""
+    assert_allclose(found.data.attrs["force_error"], 0.5, rtol=0.4)  # 14 degrees of freedom: 19 % standard error
+    for name, truth in (("braid.angle", np.radians(37.0)), ("chamber.law.c1", 8500.0)):
+        low, high = found.intervals.loc[name]
+        assert low < truth < high
+    assert found.undetermined == ()
+    assert 0.99 < found.explained < 1.0
+
+
+def test_errors_are_those_of_the_linear_model(found: mk.Fit, noisy: mk.Data) -> None:
+    """Covariance s^2 (J^T J)^-1, with J by central differences in the numbers themselves."""
+    names = found.numbers
+    misfit = Misfit(found.muscle, free_numbers(found.muscle, FREE, {}), Measured.of(MUSCLE, (noisy,), {}), 24)
+    x, step = misfit.start, 1e-4
+    columns = []
+    for k, one in enumerate(misfit.free):
+        ends = [x + sign * step * (np.arange(len(x)) == k) for sign in (1.0, -1.0)]
+        there, back = (misfit(end).force for end in ends)
+        columns.append((there - back) / (one.value(ends[0][k]) - one.value(ends[1][k])))
+    J = np.stack(columns, axis=1)
+    s2 = np.sum(found.residuals**2) / (len(found.residuals) - len(names))
+    assert_allclose(found.data["covariance"].values, s2 * np.linalg.inv(J.T @ J), rtol=2e-3)
+
+
+def test_profiles(noisy: mk.Data, found: mk.Fit) -> None:
+    """At the ends of a profile interval the sum of squares, least for the others, has grown by t^2 s^2."""
+    fit = mk.fit(START, noisy, FREE, starts=1, profiles=True)
+    assert_allclose(fit.data["value"], found.data["value"], rtol=1e-5)
+    s2 = np.sum(fit.residuals**2) / (len(fit.residuals) - 2)
+    t2 = student.ppf(0.975, len(fit.residuals) - 2) ** 2
+    misfit = Misfit(START, free_numbers(START, FREE, {}), Measured.of(START, (noisy,), {}), 24)
+    for k, one in enumerate(misfit.free):
+        for end in fit.intervals.loc[one.name]:
+            other = least(misfit, misfit.start, 1.0, "linear", (k, one.x(float(end))))
+            assert_allclose(2.0 * other.cost - np.sum(fit.residuals**2), t2 * s2, rtol=1e-2)
+        linear = found.intervals.loc[one.name]
+        assert_allclose(fit.intervals.loc[one.name], linear, atol=0.1 * (linear["high"] - linear["low"]))
+
+
+def test_what_only_counts_as_a_product(noisy: mk.Data) -> None:
+    """A thin wall's thickness and modulus: only a combination is determined, and no number is given for either."""
+    free = {"chamber.law.c1": "2 kPa to 40 kPa", "chamber.thickness": "0.2 mm to 4 mm"}
+    fit = mk.fit(START.replace("braid.angle", "37 deg"), noisy, free, starts=1)
+    assert set(fit.undetermined) == set(free)
+    assert set(fit.table["value"]) == {"not determined"}
+    assert any("combination of chamber.law.c1 and chamber.thickness" in note for note in fit.notes)
+    known = mk.fit(
+        START.replace("braid.angle", "37 deg"), noisy, free, priors={"chamber.thickness": "1 mm +- 0.01 mm"}, starts=1
+    )
+    assert known.undetermined == ()
+    assert_allclose(known.values["chamber.thickness"], 1e-3, rtol=0.01)
+    low, high = known.intervals.loc["chamber.law.c1"]
+    assert low < 8500.0 < high
+
+
+def test_what_the_data_say_nothing_of() -> None:
+    """The fibres' Poisson ratio: the paper's are so thin that it moves no force."""
+    fit = mk.fit(
+        START, curves(MUSCLE, 0.5), {"braid.angle": FREE["braid.angle"], "braid.fibre.nu": "0.1 to 0.45"}, starts=1
+    )
+    assert fit.undetermined == ("braid.fibre.nu",)
+    assert any("say nothing of braid.fibre.nu" in note for note in fit.notes)
+
+
+def test_instruments_that_are_off(exact: mk.Data) -> None:
+    data = mk.read_data(
+        {"length [m]": exact.length, "pressure [Pa]": exact.pressure, "force [N]": exact.force + 3.0}, tests="pressure"
+    )
+    fit = mk.fit(TURNED, data, ANGLE, offsets={"force": "5 N"}, starts=1)
+    assert_allclose(fit.values["braid.angle"], np.radians(37.0), rtol=3e-4)
+    assert_allclose(fit.values["offset.force"], 3.0, atol=0.03)
+    assert "off by" not in "".join(fit.notes)
+
+
+def test_points_far_off_count_less(noisy: mk.Data) -> None:
+    force = noisy.force.copy()
+    force[3] += 40.0
+    table = {"length [m]": noisy.length, "pressure [Pa]": noisy.pressure, "force [N]": force}
+    data = mk.read_data(table, tests="pressure")
+    errors = []
+    for loss in ("linear", "huber", "soft_l1", "cauchy"):
+        fit = mk.fit(TURNED, data, ANGLE, loss=loss, force_error="0.5 N", starts=1)
+        errors.append(abs(fit.values["braid.angle"] - np.radians(37.0)))
+    assert max(errors[1:]) < 0.2 * errors[0]
+
+
+def test_weights(noisy: mk.Data) -> None:
+    """A test of weight 0 is as one left out; a weight of 4 is as each point four times."""
+    free = {"braid.angle": FREE["braid.angle"]}
+    without = mk.fit(START, noisy, free, weights={"0.4 bar": 0.0}, starts=1)
+    alone = mk.fit(START, noisy["1 bar"], free, starts=1)
+    assert without.values == alone.values
+    weighted = mk.fit(START, noisy, free, weights={"1 bar": 4.0}, starts=1)
+    several = mk.fit(START, (noisy, *[noisy["1 bar"]] * 3), free, starts=1)
+    assert_allclose(weighted.values["braid.angle"], several.values["braid.angle"], rtol=1e-9)
+
+
+def test_ranges_with_muscles_that_do_not_reach(exact: mk.Data) -> None:
+    """At 55 deg the muscle is full length at 104 mm: the search turns back from there and goes on."""
+    fit = mk.fit(TURNED, exact, {"braid.angle": "20 deg to 60 deg"}, starts=8)
+    assert_allclose(fit.values["braid.angle"], np.radians(37.0), rtol=1e-6)
+    with pytest.raises(mk.SpecError, match=r"points are beyond reach of all 4 muscles tried, such as .* mm at 0.4 bar"):
+        mk.fit(TURNED, exact, {"braid.angle": "60 deg to 70 deg"}, starts=4)
+
+
+def test_prediction(found: mk.Fit) -> None:
+    """The error of a predicted force is what the covariance leaves, and the truth is within three of them."""
+    test = mk.Isobaric(length="85 mm to 110 mm", pressure="0.7 bar", points=4)
+    prediction, truth = found.predict(test), mk.run(MUSCLE, test)
+    assert (np.abs(prediction.curve.force - truth.force) < 3.0 * prediction.error).all()
+    assert_allclose(prediction.high - prediction.low, 4.0 * prediction.error, rtol=1e-6)
+    step = {}
+    for name in found.numbers:
+        size = 1e-3 * found.values[name]
+        there, back = (mk.run(found.muscle.replace(name, found.values[name] + s * size), test) for s in (1.0, -1.0))
+        step[name] = (there.force - back.force) / (2.0 * size)
+    J = np.stack([step[name] for name in found.numbers], axis=1)
+    expected = np.sqrt(np.einsum("nk,kl,nl->n", J, found.data["covariance"].values, J))
+    assert_allclose(prediction.error, expected, rtol=1e-3)
+
+
+@pytest.mark.parametrize(
+    ("options", "message"),
+    [
+        ({"free": {}}, "must name at least one number"),
+        ({"free": {"braid.angel": "30 deg to 40 deg"}}, 'did you mean "braid.angle"'),
+        ({"free": {"braid.fibres": "40 to 60"}}, "whole number"),
+        ({"free": {"braid.angle": "37 deg"}}, "must be a range"),
+        ({"free": {"braid.angle": "40 deg to 30 deg"}}, "from the smaller bound"),
+        ({"free": {"braid.angle": "30 deg to 95 deg"}}, "below 90 deg"),
+        ({"free": {"braid.angle": "30 deg to 40 mm"}}, "wrong kind of unit"),
+        ({"free": FREE, "priors": {"ends": "1"}}, "is not free"),
+        ({"free": FREE, "priors": {"braid.angle": "37 deg"}}, "a mean and its standard deviation"),
+        ({"free": FREE, "priors": {"braid.angle": "37 deg +- 0 deg"}}, "above 0"),
+        ({"free": FREE, "offsets": {"torque": "1 N"}}, "must be one of length, pressure, force"),
+        ({"free": FREE, "offsets": {"force": "-1 N"}}, "above 0"),
+        ({"free": FREE, "weights": {"9 bar": 1.0}}, "is no test of these data"),
+        ({"free": FREE, "weights": {"1 bar": -1.0}}, "at least 0"),
+        ({"free": FREE, "loss": "square"}, "must be one of linear"),
+        ({"free": FREE, "force_error": "0 N"}, "above 0 N"),
+        ({"free": FREE, "level": 95}, "below 1"),
+        ({"free": FREE, "weights": {"1 bar": 0.0, "0.4 bar": 0.0}}, "has 0 points for 2 free numbers"),
+    ],
+)
+def test_bad_input(options: dict[str, Any], message: str, exact: mk.Data) -> None:
+    with pytest.raises(mk.SpecError, match=message):
+        mk.fit(START, exact, **options)
+
+
+def test_what_cannot_be_fitted(exact: mk.Data) -> None:
+    with pytest.raises(mk.SpecError, match="must be what read_data gave"):
+        mk.fit(START, [], FREE)
+    with pytest.raises(mk.SpecError, match="friction"):
+        mk.fit(START.replace("friction", mk.Friction(coefficient=0.2, arm="0.05 mm")), exact, FREE)
+
+
+def test_which_model_the_data_need() -> None:
+    """Of stretching fibres: the model that has them predicts tests it has not seen, a rigid one does not."""
+    curves_at = [
+        mk.run(STRETCHING, mk.Isobaric(length="80 mm to 115 mm", pressure=P, points=6)) for P in (3e4, 6e4, 1e5)
+    ]
+    table = {
+        "length [m]": np.concatenate([curve.length for curve in curves_at]),
+        "pressure [Pa]": np.concatenate([curve.pressure for curve in curves_at]),
+        "force [N]": np.concatenate([curve.force for curve in curves_at]),
+    }
+    data = mk.read_data(table, tests="pressure")
+    yields = {"fittings.compliance": "0.001 mm/N to 0.1 mm/N"}
+    models = {
+        "rigid": (STRETCHING.replace("fittings", mk.Fittings(compliance="1e-9 mm/N")), ANGLE),
+        "giving way": (STRETCHING, ANGLE | yields),
+    }
+    found = mk.compare_models(models, data, starts=1)
+    assert found.best == "giving way"
+    assert found.errors["giving way"] < 1e-3 < found.errors["rigid"]
+    assert list(found.table.index) == ["giving way", "rigid"]
+    assert len(found.left_out["rigid"]) == len(data)
+    with pytest.raises(mk.SpecError, match="at least two models"):
+        mk.compare_models({"one": (MUSCLE, ANGLE)}, data)
