@@ -1,5 +1,6 @@
 """The examples as users run them, with the numbers of the theory page."""
 
+import json
 import re
 import runpy
 import warnings
@@ -15,7 +16,7 @@ from mckibben.app.cli import app
 pytestmark = pytest.mark.docs
 
 EXAMPLES = Path(__file__).parent.parent / "examples"
-CASES = sorted(EXAMPLES.glob("*.toml"))
+CASES = sorted(set(EXAMPLES.glob("*.toml")) - {EXAMPLES / "fit.toml"})
 HALF_A_DIGIT = 6e-4
 """The theory page has three decimals, of N and of mm."""
 
@@ -112,3 +113,36 @@ def test_home_made(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pyte
     assert rows[0] == pytest.approx([3.0, 20.0, 16.01], abs=0.011)
     assert rows[1] == pytest.approx([2.0, 7.74, 8.05], abs=0.011)
     assert (tmp_path / "out" / "home_made.png").stat().st_size > 10_000
+
+
+def test_fit_bench(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]) -> None:
+    rows = printed("fit_bench.py", tmp_path, monkeypatch, capsys)
+    angle, c1 = rows[0][0], rows[1][1]
+    assert (angle, c1) == (pytest.approx(36.2106, abs=2e-3), pytest.approx(11.316, abs=0.05))
+    assert rows[0][3] < 36.2 < rows[0][4]  # what the data were made from
+    assert rows[1][4] < 12.0 < rows[1][5]
+    assert rows[2][0] == pytest.approx(0.170, abs=0.0011)
+    for _, millimetres, force, error in rows[3:5]:
+        expected = mk.solve(made_up(), length=f"{millimetres} mm", pressure="0.75 bar").force
+        assert force == pytest.approx(expected, abs=3.0 * error)
+    assert (tmp_path / "out" / "fit_bench.png").stat().st_size > 10_000
+
+
+def test_the_fit_file_is_the_same_fit() -> None:
+    done = CliRunner().invoke(app, ["fit", str(EXAMPLES / "fit.toml"), "--json"])
+    assert done.exit_code == 0, done.output
+    found = json.loads(done.stdout)["numbers"]
+    assert np.rad2deg(found["braid.angle"]["value"]) == pytest.approx(36.2106, abs=2e-3)
+
+
+def made_up() -> mk.Muscle:
+    """The muscle that the points in bench.csv were made from."""
+    return mk.presets.paper().replace("braid.angle", "36.2 deg").replace("chamber.law.c1", "12 kPa")
+
+
+def test_how_the_points_of_the_bench_were_made() -> None:
+    data, rng = mk.read_data(EXAMPLES / "bench.csv"), np.random.default_rng(2023)
+    for name, bar in zip(data.tests, (0.5, 1.0), strict=True):
+        test = mk.Isobaric(length="78 mm to 114 mm", pressure=f"{bar} bar", points=10)
+        force = mk.run(made_up(), test).force + rng.normal(0.0, 0.2, 10)
+        np.testing.assert_allclose(data[name].force, force, rtol=0.0, atol=0.0051)

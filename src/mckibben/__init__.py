@@ -35,7 +35,7 @@ _PUBLIC = {
     "mckibben.data.values": ("Data",),
     "mckibben.files.case": ("read_case",),
     "mckibben.files.store": ("save",),
-    "mckibben.sweeps.load": ("load",),
+    "mckibben.fitting.load": ("load",),
 }  # fmt: skip
 _HOME = {name: module for module, names in _PUBLIC.items() for name in names}
 _MODULES = ("presets",)

@@ -12,6 +12,7 @@ import typer
 from mckibben.app import data as commands_data
 from mckibben.app import draw as commands_draw
 from mckibben.app import effects as commands_effects
+from mckibben.app import fit as commands_fit
 from mckibben.app import look as commands_look
 from mckibben.app import reach as commands_reach
 from mckibben.app import run as commands_run
@@ -40,6 +41,7 @@ app.command(epilog=commands_run.EPILOG)(commands_run.run)
 app.command(epilog=commands_sweep.EPILOG)(commands_sweep.sweep)
 app.command(epilog=commands_derive.SENSITIVITY)(commands_derive.sensitivity)
 app.command(epilog=commands_effects.EPILOG)(commands_effects.effects)
+app.command(epilog=commands_fit.EPILOG)(commands_fit.fit)
 app.command(epilog=commands_reach.LIMITS)(commands_reach.limits)
 app.command(epilog=commands_reach.WORKING_RANGE)(commands_reach.working_range)
 app.command(epilog=commands_reach.FORCE_MAP)(commands_reach.force_map)

@@ -49,7 +49,10 @@ P = ParamSpec("P")
 
 
 class Watch(Protocol):
-    """A function that is called with (done, in all) and, where the work has several parts, the name of the next one."""
+    """A function that is called with (done, in all) and, where the work has several parts, the name of the next one.
+
+    In all is 0 where nobody knows.
+    """
 
     def __call__(self, done: int, total: int, what: str = "", /) -> None: ...
 
@@ -174,11 +177,11 @@ def progress(what: str, hidden: bool = False, unit: str = "") -> Iterator[Watch]
         def watch(done: int, total: int, part: str = "", /) -> None:
             nonlocal begun
             if unit and not begun:
-                bar.reset(task, completed=done, total=total)
+                bar.reset(task, completed=done, total=total or None)
                 begun = True
             speed = bar.tasks[0].speed
             rate = f"{speed:.3g} {unit}/s" if unit and speed else ""
-            bar.update(task, description=part or what, completed=done, total=total, rate=rate)
+            bar.update(task, description=part or what, completed=done, total=total or None, rate=rate)
 
         yield watch
 

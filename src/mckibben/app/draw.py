@@ -17,6 +17,7 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
     from mckibben.data.values import Data
+    from mckibben.results.fit import Fitted
     from mckibben.results.result import Result
 
 __all__ = ["PLOT", "REPRODUCE", "plot", "reproduce"]
@@ -49,7 +50,9 @@ class Kind(StrEnum):
 
 @command
 def plot(
-    file: Annotated[Path, typer.Argument(metavar="FILE.nc", help="a result saved by mckibben run -o FILE.nc")],
+    file: Annotated[
+        Path, typer.Argument(metavar="FILE.nc", help="a result or a fit saved by mckibben run or fit -o FILE.nc")
+    ],
     output: Annotated[
         Path | None,
         typer.Option("--output", "-o", metavar="PICTURE", help=r"the picture: .png, .pdf or .svg \[default: FILE.png]"),
@@ -76,7 +79,7 @@ def plot(
     target = file.with_suffix(".png") if output is None else output
     suffix = store.suffix_of(target, PICTURES)
     disk.check_target(target, force)
-    result = store.load_result(file)
+    result = store.load(file)
     measured = None
     if data is not None:
         from mckibben.data import compare, read
@@ -84,17 +87,18 @@ def plot(
         asked = pairs("--column", columns), pairs("--unit", units), pairs("--held", held)
         measured = read.read_data(data, columns=asked[0], units=asked[1], held=asked[2])
     figure = _figure(result, kind, measured)
+    from mckibben.results.result import Result
     from mckibben.view import style
 
     disk.write(target, style.picture(figure, suffix[1:], PIXELS), force)
     say(f"drawn: {target}")
-    if measured is not None:
+    if measured is not None and isinstance(result, Result):
         for note in measured.assumptions:
             say(f"{measured.source}: {note}")
         say(f"model less measured: {compare.compare(result, measured)}")
 
 
-def _figure(result: Result, kind: Kind, measured: Data | None) -> Figure:
+def _figure(result: Result | Fitted, kind: Kind, measured: Data | None) -> Figure:
     import matplotlib
 
     matplotlib.use("Agg")  # draws to files only, without a window

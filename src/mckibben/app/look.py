@@ -139,7 +139,9 @@ def presets(
 
 @command
 def info(
-    file: Annotated[Path | None, typer.Argument(metavar="[FILE]", help="a saved result (.nc) or sweep (.zarr)")] = None,
+    file: Annotated[
+        Path | None, typer.Argument(metavar="[FILE]", help="a saved result or fit (.nc), or a sweep (.zarr)")
+    ] = None,
     as_json: AsJson = False,
 ) -> None:
     """Show the versions and the machine, or with a file what it holds."""
@@ -182,7 +184,14 @@ def _content(file: Path) -> list[tuple[str, str]]:
     from mckibben.files import store
     from mckibben.units import from_si
 
-    result = store.load_result(file)
+    found = store.load(file)
+    from mckibben.results.result import Result
+
+    if not isinstance(found, Result):
+        from mckibben.app import fitted
+
+        return [("file", str(file)), *fitted.described(found)]
+    result = found
     about = result.attributes
     verdicts = Counter(result.verdict)
     rows = [

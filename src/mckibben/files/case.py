@@ -44,6 +44,8 @@ def read_case(path: str | PathLike[str], overrides: Iterable[str] = (), *, test_
     mapping = read_mapping(path)
     if "sweep" in mapping:
         raise SpecError(str(path), allowed="describes a sweep", advice="give it to mckibben sweep")
+    if "free" in mapping:
+        raise SpecError(str(path), allowed="describes a fit", advice="give it to mckibben fit")
     return from_mapping(apply_overrides(mapping, overrides), test_required=test_required)
 
 

@@ -1,23 +1,15 @@
-"""Results as NetCDF-4 files, through h5netcdf. What is loaded equals what was saved, number by number.
-
-The layout is that of xarray, which reads them. They are written without it, because importing it takes half a second.
-A seal at the end tells damage; files of before have none, and are read without.
-"""
+"""A `Result` ↔ NetCDF-4. What is loaded equals what was saved, number by number."""
 
 from __future__ import annotations
 
-import io
 import tomllib
 from os import PathLike
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-import h5netcdf
-import h5py
 import numpy as np
 
-from mckibben import disk
-from mckibben.files.seal import SIGNATURE, Parts, damage, sealed
+from mckibben.files.hdf5 import kind, opened, written
 from mckibben.results.result import Result
 from mckibben.results.variables import COORDINATES, FIELDS, LATER, OPTIONAL, VARIABLES, about_variable, dimensions, has
 from mckibben.spec import Muscle, Test
@@ -28,92 +20,27 @@ from mckibben.spec.text import muscle_from_mapping, test_from_mapping
 if TYPE_CHECKING:
     import xarray as xr
 
-__all__ = ["load", "save"]
-
-_BROKEN = (OSError, KeyError, ValueError, TypeError, RuntimeError, AttributeError, IndexError, OverflowError, EOFError,
-           MemoryError)  # fmt: skip
-"""What HDF5 and the layers above it raise for files that are cut short or damaged."""
+__all__ = ["load", "of", "save"]
 
 
 def save(result: Result, path: str | PathLike[str], force: bool = False) -> Path:
     """Write a result as a NetCDF-4 file; SpecError if the file exists (without `force`) or cannot be written."""
-    disk.check_target(path, force)
-    content = io.BytesIO()
-    with h5netcdf.File(content, "w") as file:
-        file.dimensions = {"step": len(result), "v": len(result.column("v"))}
-        _put(file, "step", np.arange(len(result)))
-        for name in ("v", *(name for name in VARIABLES if has(result.muscle, name))):
-            _put(file, name, result.column(name))
-        file.attrs.update(result.attributes)
-    return disk.write(path, sealed(content.getbuffer(), _parts(content)), force)
-
-
-def _parts(content: io.BytesIO) -> Parts:
-    """Where the numbers of each variable are in a file."""
-    with h5py.File(content, "r") as file:
-        found = {name: (item.id.get_offset(), item.id.get_storage_size()) for name, item in file.items()}
-    return {name: (at, size) for name, (at, size) in found.items() if at is not None}
-
-
-def _put(file: h5netcdf.File, name: str, array: np.ndarray) -> None:
-    """Write one variable; text and booleans are encoded as xarray does."""
-    dims, about = dimensions(name), about_variable(name)
-    if array.dtype.kind == "f":
-        variable = file.create_variable(name, dims, array.dtype, array, fillvalue=np.nan)
-    elif array.dtype.kind == "b":
-        variable, about = file.create_variable(name, dims, np.int8, array.astype(np.int8)), about | {"dtype": "bool"}
-    elif array.dtype.kind == "U":
-        variable = file.create_variable(name, dims, h5py.string_dtype(), array.astype(object))
-    else:
-        variable = file.create_variable(name, dims, array.dtype, array)
-    variable.attrs.update(about)
+    arrays = {"step": np.arange(len(result)), "v": result.column("v")}
+    arrays |= {name: result.column(name) for name in VARIABLES if has(result.muscle, name)}
+    variables = {name: (dimensions(name), array, about_variable(name)) for name, array in arrays.items()}
+    return written(path, {"step": len(result), "v": len(arrays["v"])}, variables, result.attributes, force)
 
 
 def load(path: str | PathLike[str]) -> Result:
     """The result in a NetCDF file written by `save`; SpecError, in one line, for any other file."""
-    name = str(path)
-    stored = _opened(name, _content(path))
+    return of(opened(path), str(path))
+
+
+def of(stored: xr.Dataset, name: str) -> Result:
+    """The result that a file of this name holds; SpecError where it holds something else."""
     data = _checked(name, stored)
     muscle, test = _specification(name, data.attrs)
     return Result(muscle, test, data)
-
-
-def _content(path: str | PathLike[str]) -> bytes:
-    name = str(path)
-    try:
-        return Path(path).read_bytes()
-    except FileNotFoundError as error:
-        raise SpecError(name, allowed="there is no such file") from error
-    except OSError as error:
-        raise SpecError(name, allowed=f"cannot be read: {error.strerror or error}") from error
-    except ValueError as error:  # a null character in the name
-        raise SpecError(name, allowed="is no name of a file") from error
-
-
-def _opened(name: str, content: bytes) -> xr.Dataset:
-    wrong = damage(content)
-    if wrong is not None:
-        raise SpecError(name, allowed=f"is cut short or damaged: {wrong} not as written", advice="make it again")
-    if not content.startswith(SIGNATURE):
-        said = "is empty" if not content else "is no NetCDF-4 file"
-        raise SpecError(name, allowed=said, advice="give a file that mckibben wrote as .nc")
-    import xarray as xr
-
-    try:
-        _read_through(content)
-        return xr.load_dataset(io.BytesIO(content), engine="h5netcdf", decode_times=False, decode_coords=False)
-    except _BROKEN as error:
-        raise SpecError(name, allowed="is cut short or damaged", advice="make it again") from error
-
-
-def _read_through(content: bytes) -> None:
-    """Read the whole file with h5py first, which raises where it is damaged; h5netcdf would write to stderr instead."""
-    with h5py.File(io.BytesIO(content), "r") as file:
-        dict(file.attrs)
-        for member in file.values():
-            dict(member.attrs)
-            if isinstance(member, h5py.Dataset):
-                member[...]
 
 
 def _checked(name: str, stored: xr.Dataset) -> xr.Dataset:
@@ -121,6 +48,8 @@ def _checked(name: str, stored: xr.Dataset) -> xr.Dataset:
     import xarray as xr
 
     about = {str(key): str(value) for key, value in stored.attrs.items()}
+    if kind(stored) == "fit":
+        raise SpecError(name, allowed="holds a fit, not a result", advice="open it with mckibben.load")
     writer = about.get("mckibben_version")
     if writer is None:
         raise SpecError(name, allowed="holds no result of mckibben")

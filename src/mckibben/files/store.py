@@ -10,9 +10,10 @@ from mckibben import disk
 from mckibben.spec.errors import SpecError
 
 if TYPE_CHECKING:
+    from mckibben.results.fit import Fitted
     from mckibben.results.result import Result
 
-__all__ = ["SUFFIXES", "check_output", "load_result", "save", "suffix_of"]
+__all__ = ["SUFFIXES", "check_output", "load", "load_result", "save", "suffix_of"]
 
 SUFFIXES = {".nc": "everything, to be loaded again (NetCDF-4)", ".csv": "the table of states, with notes beside it"}
 
@@ -37,13 +38,13 @@ def check_output(path: str | PathLike[str], force: bool = False) -> None:
 
 
 def save(result: Any, path: str | PathLike[str], force: bool = False) -> Path:
-    """Save a result: `.nc` keeps everything and can be loaded again, `.csv` is the table of states.
+    """Save a result or a fit: `.nc` keeps everything and can be loaded again, `.csv` is a table.
 
-    A table holds nothing but its head and its rows; what was computed and by what is in a text file beside it
-    ("out.csv.txt").
+    A table holds nothing but its head and its rows, which are states, of a fit the measured points with their
+    residuals; what was computed and by what is in a text file beside it ("out.csv.txt").
 
     Args:
-        result: what `run` or `solve` gave. Of a `State` its `result` is saved, and that is what `load` gives.
+        result: what `run`, `solve` or `fit` gave. Of a `State` its `result` is saved, and that is what `load` gives.
         path: the file; its ending says the format. It is written whole or not at all.
         force: replace a file that is there already.
 
@@ -59,7 +60,14 @@ def save(result: Any, path: str | PathLike[str], force: bool = False) -> Path:
     'curve.nc'
     """
     result = _result(result)
-    if suffix_of(path) == ".nc":
+    from mckibben.results.result import Result
+
+    whole = suffix_of(path) == ".nc"
+    if not isinstance(result, Result):
+        from mckibben.files import fits
+
+        return (fits.save if whole else fits.save_csv)(result, path, force)
+    if whole:
         from mckibben.files import netcdf
 
         return netcdf.save(result, path, force)
@@ -68,26 +76,42 @@ def save(result: Any, path: str | PathLike[str], force: bool = False) -> Path:
     return table.save_csv(result, path, force)
 
 
-def _result(given: Any) -> Result:
+def _result(given: Any) -> Result | Fitted:
+    from mckibben.results.fit import Fitted
     from mckibben.results.result import Result, State
 
     if isinstance(given, State):
         return given.result
-    if isinstance(given, Result):
+    if isinstance(given, (Result, Fitted)):
         return given
     if hasattr(given, "to_netcdf"):
         raise SpecError(
-            "save", allowed="takes what run or solve gave", advice='write a Dataset with data.to_netcdf("x.nc")'
+            "save", allowed="takes what run, solve or fit gave", advice='write a Dataset with data.to_netcdf("x.nc")'
         )
-    raise SpecError("save", given, "must be what run or solve gave")
+    raise SpecError("save", given, "must be what run, solve or fit gave")
 
 
-def load_result(path: str | PathLike[str]) -> Result:
-    """The result in an `.nc` file. SpecError for any file that is not a whole result."""
+def load(path: str | PathLike[str]) -> Result | Fitted:
+    """The result or the fit in an `.nc` file. SpecError for any file that is neither, or not whole."""
     if Path(path).suffix.lower() == ".csv":
         raise SpecError(str(path), allowed="is a table only", advice="save results as .nc to load them again")
     if Path(path).suffix.lower() == ".zarr":
         raise SpecError(str(path), allowed="holds a sweep, not one result", advice="open it with mckibben.load")
-    from mckibben.files import netcdf
+    from mckibben.files import hdf5, netcdf
 
-    return netcdf.load(path)
+    stored = hdf5.opened(path)
+    if hdf5.kind(stored) == "fit":
+        from mckibben.files import fits
+
+        return fits.of(stored, str(path))
+    return netcdf.of(stored, str(path))
+
+
+def load_result(path: str | PathLike[str]) -> Result:
+    """The result in an `.nc` file. SpecError for any file that is not a whole result."""
+    found = load(path)
+    from mckibben.results.result import Result
+
+    if not isinstance(found, Result):
+        raise SpecError(str(path), allowed="holds a fit, not a result", advice="open it with mckibben.load")
+    return found

@@ -16,7 +16,7 @@ from mckibben.results.result import Result
 from mckibben.results.sensitivity import Sensitivity
 from mckibben.results.variables import EXTREMES, STEP, has
 
-__all__ = ["COLUMNS", "map_csv", "map_rows", "notes_file", "rows", "save_csv", "save_sensitivity"]
+__all__ = ["COLUMNS", "map_csv", "map_rows", "notes_file", "rows", "save_csv", "save_sensitivity", "write"]
 
 if TYPE_CHECKING:
     from xarray import Dataset
@@ -38,10 +38,10 @@ def save_csv(result: Result, path: str | PathLike[str], force: bool = False) -> 
     writer.writerow(["state", *(_header(name, COLUMNS[name][0]) for name in names)])
     for state, row in enumerate(rows(result)):
         writer.writerow([state, *(_cell(row[name]) for name in names)])
-    return _write(path, _comments(result), text.getvalue(), force)
+    return write(path, _comments(result), text.getvalue(), force)
 
 
-def _write(path: str | PathLike[str], notes: Iterable[str], text: str, force: bool) -> Path:
+def write(path: str | PathLike[str], notes: Iterable[str], text: str, force: bool) -> Path:
     """A table that any program reads, and the notes on it in a file beside it."""
     disk.check_target(path, force)
     told = "".join(f"{line}".rstrip() + "\n" for line in notes)
@@ -66,7 +66,7 @@ def save_sensitivity(found: Sensitivity, path: str | PathLike[str], force: bool 
         known = [data[f"number{part}"].values[k].item() for part in ("", "_value", "_unit", "_assumed")]
         shares = [*data["relative"].values[k].tolist(), *data["absolute"].values[k].tolist()]
         writer.writerow([*map(_cell, known), *(_cell(None if share != share else share) for share in shares)])
-    return _write(path, lines, text.getvalue(), force)
+    return write(path, lines, text.getvalue(), force)
 
 
 def rows(result: Result) -> Iterator[dict[str, Any]]:

@@ -44,6 +44,15 @@ class Fitted:
     given: Muscle
     data: xr.Dataset
 
+    def __eq__(self, other: object) -> bool:
+        if not isinstance(other, Fitted):
+            return NotImplemented
+        same = self.muscle == other.muscle and self.given == other.given
+        return same and bool(self.data.identical(other.data))
+
+    def __hash__(self) -> int:
+        return hash((self.muscle, self.given))
+
     @property
     def numbers(self) -> tuple[str, ...]:
         """Names of what was free."""

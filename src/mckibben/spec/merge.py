@@ -71,11 +71,14 @@ def too_deep(name: str) -> SpecError:
     return SpecError(name, allowed="has too many tables or lists within each other", advice=_SHALLOWER)
 
 
-def apply_overrides(mapping: Mapping[Any, Any], overrides: Iterable[str]) -> dict[Any, Any]:
+def apply_overrides(
+    mapping: Mapping[Any, Any], overrides: Iterable[str], tables: tuple[str, ...] = ("muscle", "test")
+) -> dict[Any, Any]:
     """A case mapping with "dotted.name=value" texts put in: "braid.angle=36 deg", "test.pressure=0 to 2 bar".
 
-    Names begin with "muscle." or "test."; without either they are the muscle's. A value that is a TOML value (56, 0.4,
-    true, [1, 2]) is taken as such, anything else as text. SpecError for a text without "=" or a name inside a value.
+    Names begin with one of `tables` ("muscle.", "test."); without any they are the muscle's. A value that is a TOML
+    value (56, 0.4, true, [1, 2]) is taken as such, anything else as text. SpecError for a text without "=" or a name
+    inside a value.
     """
     if not isinstance(mapping, Mapping):
         raise SpecError("case file", mapping, "must be a table")
@@ -88,7 +91,7 @@ def apply_overrides(mapping: Mapping[Any, Any], overrides: Iterable[str]) -> dic
             raise SpecError("override", text, "must be name=value", 'write it like "braid.angle=36 deg"')
         if len(keys) > DEEPEST:
             raise SpecError("override", text, f"names a table within {len(keys) - 1} others", _SHALLOWER)
-        if keys[0] not in ("muscle", "test"):
+        if keys[0] not in tables:
             keys = ["muscle", *keys]
         if len(keys) == 1:
             raise SpecError("override", text, f"must name a field of the {keys[0]}", 'such as "braid.angle=36 deg"')

@@ -37,6 +37,8 @@ def read_sweep(path: str | PathLike[str], overrides: Iterable[str] = (), *, requ
     for `sweep` to read.
     """
     mapping = read_mapping(path)
+    if "free" in mapping:
+        raise SpecError(str(path), allowed="describes a fit", advice="give it to mckibben fit")
     if "sweep" not in mapping:
         if required:
             raise SpecError("sweep", allowed="is missing", advice=f"write a [sweep] table, {_EXAMPLE}")

@@ -1,0 +1,48 @@
+"""Opening what was saved, by the ending of its name and by what is in it: a result, a fit, or the store of a sweep."""
+
+from __future__ import annotations
+
+from os import PathLike
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from mckibben.files import store
+
+if TYPE_CHECKING:
+    from xarray import Dataset
+
+    from mckibben.fitting.answer import Fit
+    from mckibben.results.result import Result
+
+__all__ = ["load"]
+
+
+def load(path: str | PathLike[str]) -> Result | Fit | Dataset:
+    """The result or the fit in an `.nc` file, equal to what was saved, or the sweep in a `.zarr` store.
+
+    Args:
+        path: the file or the store.
+
+    Returns:
+        A `Result` or a `Fit`; for a sweep an xarray Dataset that is read from the disk when used.
+
+    Raises:
+        SpecError: if there is nothing, or nothing that `save` or `sweep` wrote, or a file that is damaged.
+
+    >>> curve = mk.run(mk.presets.paper(), mk.Isometric(length="115 mm", pressure="0 to 1 bar", points=3))
+    >>> path = mk.save(curve, "curve.nc")
+    >>> mk.load(path) == curve
+    True
+    """
+    if Path(path).suffix.lower() == ".zarr":
+        from mckibben.sweeps import store as sweeps  # here, because a result takes no Zarr
+
+        return sweeps.load(path)
+    found = store.load(path)
+    from mckibben.results.result import Result
+
+    if isinstance(found, Result):
+        return found
+    from mckibben.fitting.answer import Fit  # here, because a result takes no solver
+
+    return Fit(found.muscle, found.given, found.data)
