@@ -334,7 +334,7 @@ def test_walk_visits_every_number():
 
 def test_presets():
     paper = presets.paper()
-    assert presets.names() == ("paper", "reference")
+    assert presets.names()[:2] == ("paper", "reference")  # then the catalogue: test_catalogue.py
     assert presets.get("paper") == paper
     assert (paper.braid.radius, paper.braid.length, show(paper.braid.angle, "rad")) == (0.0125, 0.085, "37 deg")
     assert presets.reference().braid.fibre.stiffnesses == (0.575e-6, 0.575e-6, 0.41e-6)
