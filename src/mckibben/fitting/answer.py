@@ -41,7 +41,20 @@ class Prediction:
 
 @attrs.frozen(eq=False, repr=False)
 class Fit(Fitted):
-    """What `fit` gives: a `Fitted` that predicts."""
+    """What `fit` gives: the fitted muscle, how sure its numbers are, and how far it is from each point.
+
+    Args:
+        muscle: the muscle with the best values.
+        given: the muscle from which the fit began.
+        data: xarray Dataset of the numbers and the points, in SI.
+
+    >>> muscle = mk.presets.paper()
+    >>> curve = mk.run(muscle, mk.Isobaric(length="85 mm to 110 mm", pressure="1 bar", points=6))
+    >>> table = {"length [m]": curve.length, "pressure [Pa]": curve.pressure, "force [N]": curve.force}
+    >>> found = mk.fit(muscle, mk.read_data(table), {"braid.angle": "35 deg to 39 deg"}, starts=1)
+    >>> found.numbers, found.undetermined
+    (('braid.angle',), ())
+    """
 
     def predict(self, test: Test, *, tolerance: float = 1e-6) -> Prediction:
         """A test of the fitted muscle with the standard error of its force.
