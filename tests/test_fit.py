@@ -285,3 +285,14 @@ def test_which_model_the_data_need() -> None:
     assert len(found.left_out["rigid"]) == len(data)
     with pytest.raises(mk.SpecError, match="at least two models"):
         mk.compare_models({"one": (MUSCLE, ANGLE)}, data)
+
+
+def test_an_angle_from_the_axis(exact: mk.Data) -> None:
+    """Ranges and answers are in the muscle's own words; the muscle found is the same."""
+    braid = mk.Braid(
+        radius="12.5 mm", length="85 mm", angle="54 deg", angle_from="axis", fibres=56, fibre=MUSCLE.braid.fibre
+    )
+    fit = mk.fit(MUSCLE.replace("braid", braid), exact, {"braid.angle": "51 deg to 55 deg"}, starts=4)
+    assert_allclose(fit.values["braid.angle"], np.radians(53.0), rtol=1e-6)
+    assert_allclose(fit.muscle.braid.angle, np.radians(37.0), rtol=1e-6)
+    assert fit.predict(mk.Isobaric(length="100 mm", pressure="1 bar")).error.max() < 0.01

@@ -175,15 +175,15 @@ def _start(misfit: Misfit, sigma: float, count: int, watch: Callable[[int], None
         watch(0)
         ranked.append((missing, cost, len(ranked), x))
     missing, _, _, x = min(ranked)
-    if missing:
+    misfit.place_anew(x)
+    if misfit.near is None:
         lost = np.flatnonzero(~misfit(x).found)
         lengths, pressures = misfit.measured.points[lost].T
         said = (
-            f"{missing} of {len(misfit.measured.force)} points are beyond reach of all {len(ranked)} muscles tried, "
+            f"{len(lost)} of {len(misfit.measured.force)} points are beyond reach of all {len(ranked)} muscles tried, "
             f"such as {show(float(lengths[0]), 'mm')} at {show(float(pressures[0]), 'bar')}"
         )
         raise SpecError("data", allowed=said, advice="widen the ranges, or leave these points out with data.where()")
-    misfit.place_anew(x)
     return x
 
 

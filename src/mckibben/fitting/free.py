@@ -11,6 +11,7 @@ import attrs
 import numpy as np
 
 from mckibben.spec import Muscle, SpecError
+from mckibben.spec.angle import AngleFrom, from_parallels
 from mckibben.spec.change import changed_muscle
 from mckibben.spec.declared import Declared, numbers
 from mckibben.spec.errors import nearest
@@ -18,7 +19,7 @@ from mckibben.spec.plausible import trusted
 from mckibben.spec.vary import full_name
 from mckibben.units import DISPLAY, UnitError, show, to_si
 
-__all__ = ["OFFSETS", "Free", "free_numbers", "offsets_of", "put_in"]
+__all__ = ["OFFSETS", "Free", "free_numbers", "is_turned", "offsets_of", "put_in"]
 
 OFFSETS = {
     "length": ("m", "added to every measured length"),
@@ -88,6 +89,8 @@ def free_numbers(muscle: Muscle, free: Mapping[str, Any], priors: Mapping[str, A
             advice = nearest(name, [one for one, (declared, _) in known.items() if declared.kind != "count"])
             raise SpecError(f"free.{given_name}", allowed="is no number of this muscle", advice=advice)
         declared, number = known[name]
+        if is_turned(muscle, name):
+            number = from_parallels(number, muscle.braid.measured_from)
         if declared.kind == "count":
             raise SpecError(f"free.{name}", given, "is a whole number", "fit once for each, and compare the errors")
         low, high = _range(f"free.{name}", given, declared)
@@ -114,6 +117,11 @@ def offsets_of(offsets: Mapping[str, Any]) -> tuple[Free, ...]:
         shown = DISPLAY.get(unit, unit)
         found.append(Free(f"offset.{name}", unit, -FAR * sd, FAR * sd, 0.0, meaning, shown, (0.0, sd)))
     return tuple(found)
+
+
+def is_turned(muscle: Muscle, name: str) -> bool:
+    """Whether a number is the complement of what the muscle keeps: an angle that is given from the axis."""
+    return name == "braid.angle" and muscle.braid.measured_from == AngleFrom.AXIS
 
 
 def put_in(muscle: Muscle, free: tuple[Free, ...], values: np.ndarray) -> Muscle:

@@ -15,7 +15,7 @@ import numpy as np
 
 from mckibben.data.values import Data
 from mckibben.fitting.forces import in_blocks
-from mckibben.fitting.free import Free, put_in
+from mckibben.fitting.free import Free, is_turned, put_in
 from mckibben.fitting.states import fitting_problem, ordered, seek
 from mckibben.model.extension import longest_of
 from mckibben.model.parameters import parameters
@@ -85,9 +85,14 @@ class Misfit:
     last: tuple[bytes, Seen] | None = attrs.field(init=False, default=None)
 
     def __attrs_post_init__(self) -> None:
-        self.orders = ordered(self.measured.points, self.measured.tests)
+        self.orders = ordered(self.measured.points, self.measured.tests, self.muscle.rest_length)
         leaves = [name for name, _, _ in numbers(self.muscle)]
         self.places = tuple(leaves.index(one.name) for one in self.free if one.name in leaves)
+
+    @property
+    def turned(self) -> np.ndarray:
+        """Which numbers are the complement of what the muscle keeps (k)."""
+        return np.array([is_turned(self.muscle, one.name) for one in self.free])
 
     @property
     def start(self) -> np.ndarray:
@@ -168,12 +173,14 @@ class Misfit:
         n, problem = len(points), self.problem
         assert problem is not None
         shift = [self.offset(values, "length"), self.offset(values, "pressure")]
-        own = values[: len(self.places)]
+        own, turned = values[: len(self.places)], self.turned[: len(self.places)]
+        leaves = np.where(turned, np.pi / 2.0 - own, own)
         plain = evolved(self.muscle, name=None, assumed=())
-        free = np.concatenate([own, shift])
+        free = np.concatenate([leaves, shift])
         found = in_blocks(problem.basis, self.places, problem.b, plain, free, points, near)
         force, by = found.force + self.offset(values, "force"), found.slopes
-        columns = dict(zip((one.name for one in self.free[: len(own)]), by.T[: len(own)], strict=True))
+        signed = by[:, : len(own)] * np.where(turned, -1.0, 1.0)
+        columns = dict(zip((one.name for one in self.free[: len(own)]), signed.T, strict=True))
         columns |= {"offset.length": by[:, -2], "offset.pressure": by[:, -1], "offset.force": np.ones(n)}
         scaled = [columns[one.name] * one.slope(float(at)) for one, at in zip(self.free, x, strict=True)]
         return force, np.stack(scaled, axis=1), Unknowns(found.states.u, found.states.loads), found.good

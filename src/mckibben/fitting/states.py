@@ -3,8 +3,8 @@
 import numpy as np
 
 from mckibben.discretise.placement import crowding
+from mckibben.solver import find
 from mckibben.solver.bench import NEARLY, Bench
-from mckibben.solver.find import along
 from mckibben.solver.follow import follow_to
 from mckibben.solver.held import Held
 from mckibben.solver.path import FEW_LEGS, LOOSE, NEAR, trace
@@ -19,14 +19,20 @@ GAPS = 3
 """How many points of one test may be beyond reach before the rest of it is given up."""
 
 
-def ordered(points: np.ndarray, tests: np.ndarray) -> tuple[np.ndarray, ...]:
-    """Rows of `points` (n, 2: length, pressure) test by test, each along what varies more, from the rest length on."""
+def ordered(points: np.ndarray, tests: np.ndarray, rest: float) -> tuple[np.ndarray, ...]:
+    """Rows of `points` (n, 2: length, pressure) test by test, each along what varies more.
+
+    The first is that end which is nearer to the length `rest`, or to no pressure.
+    """
     found = []
     for test in dict.fromkeys(tests.tolist()):
         rows = np.flatnonzero(tests == test)
         some = points[rows]
         spread = np.ptp(some, axis=0) / np.maximum(np.abs(some).max(axis=0), 1e-12)
-        found.append(rows[np.argsort(some[:, int(np.argmax(spread))], kind="stable")])
+        along = int(np.argmax(spread))
+        order = np.argsort(some[:, along], kind="stable")
+        first, last = np.abs(some[order[[0, -1]], along] - (rest, 0.0)[along])
+        found.append(rows[order if first <= last else order[::-1]])
     return tuple(found)
 
 
@@ -54,7 +60,7 @@ def seek(
 
 
 def _followed(problem: Problem, path: list[Held]) -> list[tuple[np.ndarray, np.ndarray]]:
-    first = along(problem, path[0], legs=FEW_LEGS, tolerance=NEAR)
+    first = find.along(problem, path[0], legs=FEW_LEGS, tolerance=NEAR)
     if not first.converged:
         return []
     return [(one.u, one.loads) for one in follow_to(problem, path, first, LOOSE)]
