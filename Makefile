@@ -43,7 +43,7 @@ demo: setup
 	$(BIN)/mckibben reproduce -o out/demo --force
 
 test: setup
-	$(BIN)/python -m pytest -n 2 --dist loadfile
+	$(BIN)/python -m pytest -n 2 --dist loadfile --durations=25
 
 lint: setup
 	$(BIN)/ruff check .
