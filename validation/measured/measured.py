@@ -18,16 +18,9 @@ import matplotlib.pyplot as plt
 import numpy as np
 
 import mckibben as mk
-from mckibben.fitting.misfit import Measured, Misfit
 
 HERE = Path(__file__).parent
 Model = tuple[mk.Muscle, dict[str, Any], dict[str, Any]]
-
-
-def forces(found: mk.Fit, data: mk.Data) -> np.ndarray:
-    """Forces of a fitted muscle at measured points, as the instruments would show them."""
-    misfit = Misfit(found.muscle, found.free, Measured.of(found.muscle, (data,), {}), int(found.data.attrs["unknowns"]))
-    return misfit(misfit.start).force
 
 
 def part(data: mk.Data, names: set[str]) -> mk.Data:
@@ -54,7 +47,7 @@ def fitted(title: str, data: mk.Data, models: dict[str, Model], training: set[st
         begun = time.perf_counter()
         found = mk.fit(muscle, known, free, **options)
         took = time.perf_counter() - begun
-        misses = forces(found, unseen) - unseen.force
+        misses = found.forces(unseen) - unseen.force
         rms = float(np.sqrt(np.mean(misses**2)))
         cells = []
         for k, _ in enumerate(unseen.tests if shown else ()):
@@ -87,7 +80,7 @@ def draw(data: mk.Data, found: mk.Fit, training: set[str], title: str, path: Pat
     for name, colour in zip(data.tests, colours, strict=True):
         test = data[name]
         x, order = 1e3 * test.lengths(found.muscle), np.argsort(test.lengths(found.muscle), kind="stable")
-        axes.plot(x[order], forces(found, test)[order], color=colour, lw=1.2)
+        axes.plot(x[order], found.forces(test)[order], color=colour, lw=1.2)
         face = colour if name in training else "none"
         label = name if name in training else f"{name} (predicted)"
         axes.scatter(x, test.force, 14, facecolors=[face], edgecolors=[colour], label=label)

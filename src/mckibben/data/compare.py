@@ -91,7 +91,7 @@ def values_of(data: Data, result: Result, name: str) -> np.ndarray:
     if name in ("pressure", "force"):
         return np.asarray(getattr(data, name))
     lengths = data.lengths(result.muscle)
-    return lengths if name == "length" else 1.0 - lengths / float(result.muscle.braid.length)
+    return lengths if name == "length" else 1.0 - lengths / float(result.muscle.rest_length)
 
 
 def matching(result: Result, data: Data) -> Data:
@@ -103,7 +103,7 @@ def matching(result: Result, data: Data) -> Data:
         return data
     value, points = float(np.median(wanted)), values_of(data, result, held)
     slack = {
-        "length": 0.5 * _SAME * float(result.muscle.braid.length),
+        "length": 0.5 * _SAME * float(result.muscle.rest_length),
         "pressure": _SAME * abs(value),
         "force": max(_SAME * abs(value), _SLACK),
     }[held]

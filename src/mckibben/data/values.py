@@ -125,7 +125,7 @@ class Data:
         """Lengths between the fittings of a muscle, in m.
 
         Args:
-            muscle: its rest length H0 (`braid.length`) is that of contractions, unless the data have one of their own.
+            muscle: its `rest_length` is that of contractions, unless the data have one of their own.
             free_length: where extensions were measured and the data do not tell their free length: one, or one per
                 point [m or text], such as a model's length without force at `data.pressure`.
 
@@ -135,7 +135,7 @@ class Data:
         Raises:
             SpecError: where extensions were measured and no free length is known.
         """
-        return self._lengths(float(muscle.braid.length), free_length)
+        return self._lengths(float(muscle.rest_length), free_length)
 
     def _lengths(self, made: float | None, free: Any) -> np.ndarray:
         if self.measured == "length":

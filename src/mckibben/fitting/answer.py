@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import Any
 
 import attrs
 import numpy as np
 
+from mckibben.data.values import Data
 from mckibben.experiments.run import run
 from mckibben.fitting.free import Free, put_in
 from mckibben.fitting.misfit import Measured, Misfit
@@ -90,6 +92,21 @@ class Fit(Fitted):
             with np.errstate(invalid="ignore"):
                 error[good] = np.sqrt(np.einsum("nk,kl,nl->n", slopes, covariance, slopes))
         return Prediction(curve, error)
+
+    def forces(self, data: Data | Sequence[Data]) -> np.ndarray:
+        """Forces [N] of the fitted muscle at measured points, as the instruments would show them; NaN beyond its reach.
+
+        >>> muscle = mk.presets.paper()
+        >>> curve = mk.run(muscle, mk.Isobaric(length="85 mm to 110 mm", pressure="1 bar", points=6))
+        >>> table = {"length [m]": curve.length, "pressure [Pa]": curve.pressure, "force [N]": curve.force}
+        >>> data = mk.read_data(table)
+        >>> found = mk.fit(muscle, data, {"braid.angle": "35 deg to 39 deg"}, starts=1)
+        >>> bool(abs(found.forces(data) - data.force).max() < 1e-3)
+        True
+        """
+        several = (data,) if isinstance(data, Data) else tuple(data)
+        misfit = Misfit(self.muscle, self.free, Measured.of(self.muscle, several, {}), int(self.data.attrs["unknowns"]))
+        return misfit(misfit.start).force
 
     @property
     def free(self) -> tuple[Free, ...]:

@@ -11,7 +11,6 @@ import numpy as np
 from mckibben.data.values import Data
 from mckibben.fitting.answer import Fit
 from mckibben.fitting.fit import fit
-from mckibben.fitting.misfit import Measured, Misfit
 from mckibben.spec import Muscle, SpecError
 
 __all__ = ["Choice", "compare_models"]
@@ -105,11 +104,12 @@ def compare_models(
     for name, (muscle, free) in models.items():
         misses, forces = [], []
         for parts, rest in _folds(several, tests):
-            some = tuple(one for one in rest if len(one))
-            found = fit(muscle, some, free, **options)
-            measured = Measured.of(muscle, tuple(one for one in parts if len(one)), {})
-            misses.append(_predicted(found, measured) - measured.force)
-            forces.append(measured.force)
+            left = {name for one in rest for name in one.tests}
+            weights = {name: weight for name, weight in (options.get("weights") or {}).items() if name in left}
+            found = fit(muscle, rest, free, **options | {"weights": weights})
+            force = np.concatenate([one.force for one in parts])
+            misses.append(found.forces(parts) - force)
+            forces.append(force)
         left_out[name] = np.concatenate(misses)
     return Choice(fits, left_out, np.concatenate(forces))
 
@@ -126,11 +126,5 @@ def _folds(several: tuple[Data, ...], tests: list[str]) -> list[tuple[list[Data]
                 chosen = np.arange(len(one)) % FOLDS == k
             out.append(one.where(chosen))
             kept.append(one.where(~chosen))
-        folds.append((out, kept))
+        folds.append(([one for one in out if len(one)], [one for one in kept if len(one)]))
     return folds
-
-
-def _predicted(found: Fit, measured: Measured) -> np.ndarray:
-    """Forces of a fitted muscle at measured points, as the instruments would show them; NaN beyond its reach."""
-    misfit = Misfit(found.muscle, found.free, measured, int(found.data.attrs["unknowns"]))
-    return misfit(misfit.start).force

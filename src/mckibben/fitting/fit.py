@@ -10,7 +10,7 @@ import numpy as np
 from mckibben.data.values import Data
 from mckibben.experiments.foresee import refuse_friction
 from mckibben.fitting.answer import Fit, answer
-from mckibben.fitting.free import free_numbers, offsets_of
+from mckibben.fitting.free import Free, free_numbers, offsets_of
 from mckibben.fitting.misfit import Measured, Misfit
 from mckibben.fitting.notes import notes_on
 from mckibben.fitting.search import LOSSES, Least, candidates, cost_of, least
@@ -89,6 +89,7 @@ def fit(
     if not 0.5 <= level < 1.0:
         raise SpecError("level", level, "must be at least 0.5 and below 1", "0.95 is usual")
     numbers = (*free_numbers(muscle, free, priors or {}), *offsets_of(offsets or {}))
+    _check_contractions(several, numbers)
     measured = _measured(muscle, several, weights or {})
     if len(measured.force) + sum(one.prior is not None for one in numbers) <= len(numbers):
         said = f"has {len(measured.force)} points for {len(numbers)} free numbers"
@@ -97,12 +98,15 @@ def fit(
     best, sigma = _best(misfit, known, loss, starts, tolerance, watch or (lambda count: None))
     spread = spread_of(best, known is not None)
     low, high = _intervals(misfit, best, spread, sigma, loss, level, profiles)
+    notes, error = notes_on(misfit, best, spread), _error(misfit, best.x)
+    if error > tolerance:
+        notes.append(f"the forces of the model are computed to {error:.1g} only, not to {tolerance:g}")
     about = {
         "level": level, "intervals": "profile likelihood" if profiles else "standard errors", "loss": loss,
         "force_error": float(sigma * np.sqrt(spread.scale)), "message": best.message,
         "converged": int(best.converged), "evaluations": best.evaluations, "unknowns": misfit.size,
-        "source": ", ".join(one.source for one in several),
-        "notes": "\n".join([*notes_on(misfit, best, spread), *(line for one in several for line in one.assumptions)]),
+        "source": ", ".join(one.source for one in several), "error_estimate": error,
+        "notes": "\n".join([*notes, *(line for one in several for line in one.assumptions)]),
     }  # fmt: skip
     return answer(misfit, best, spread, (low, high), about)
 
@@ -114,6 +118,14 @@ def _several(data: Data | Sequence[Data]) -> tuple[Data, ...]:
     if sum(len(one) for one in several) == 0:
         raise SpecError("data", allowed="holds no points")
     return several
+
+
+def _check_contractions(several: tuple[Data, ...], numbers: tuple[Free, ...]) -> None:
+    """SpecError where contractions refer to a rest length that is itself free: they are no lengths then."""
+    resized = [one.name for one in numbers if one.name in ("braid.length", "fittings.dead_length")]
+    if resized and any(one.measured == "contraction" and one.rest_length is None for one in several):
+        said = "cannot be free where contractions were measured, which refer to the rest length"
+        raise SpecError(f"free.{resized[0]}", allowed=said, advice='say held={"rest_length": "300 mm"} when reading')
 
 
 def _known(force_error: Any) -> float | None:
@@ -154,16 +166,20 @@ def _best(
     x = _start(misfit, known or 1.0, starts, tell)
     needs_size = known is None and (loss != "linear" or any(one.prior is not None for one in misfit.free))
     sigma = known or (_size(misfit, x) if needs_size else 1.0)
-    for _ in range(PASSES):
-        found = least(misfit, x, sigma, loss, watch=tell)
-        x = found.x
-        if misfit.size < SIZES[-1] and _error(misfit, x) > tolerance:
-            misfit.place_anew(x, SIZES[SIZES.index(misfit.size) + 1])
-            continue
-        size = _size(misfit, x)
-        if not needs_size or abs(size / sigma - 1.0) < SETTLED:
+    for finer in (*SIZES[1:], None):
+        for _ in range(PASSES):
+            found = least(misfit, x, sigma, loss, watch=tell)
+            x, size = found.x, _size(misfit, found.x)
+            if not needs_size or abs(size / sigma - 1.0) < SETTLED:
+                break
+            sigma = size
+        if finer is None or _error(misfit, x) <= tolerance:
             break
-        sigma = size
+        coarser = misfit.size
+        misfit.place_anew(x, finer)
+        if misfit.near is None:  # lost on more unknowns: what was found stands, with the error that it has
+            misfit.place_anew(x, coarser)
+            break
     return found, sigma
 
 

@@ -135,6 +135,7 @@ class _Arrived(NamedTuple):
 
 
 def _arrived(basis: Basis, on: Placed, which: Array, target: Array, start: Unknowns) -> _Arrived:
+    """Newton from a state that is near, until its last step is `CLOSE`."""
 
     def more(now: _Arrived) -> Array:
         return (now.count < CORRECTIONS) & (now.change > CLOSE)

@@ -94,12 +94,11 @@ def free_numbers(muscle: Muscle, free: Mapping[str, Any], priors: Mapping[str, A
         if declared.kind == "count":
             raise SpecError(f"free.{name}", given, "is a whole number", "fit once for each, and compare the errors")
         low, high = _range(f"free.{name}", given, declared)
-        # In the middle where the muscle's own number is not inside.
-        start = float(number) if low <= float(number) <= high else 0.0
-        blank = Free(name, declared.unit, low, high, start, declared.meaning, declared.display)
-        blank = blank if start else attrs.evolve(blank, start=blank.value(0.5))
+        one = Free(name, declared.unit, low, high, float(number), declared.meaning, declared.display)
+        if not low <= one.start <= high:
+            one = attrs.evolve(one, start=one.value(0.5))
         prior = _prior(f"priors.{name}", told[name], declared.unit) if name in told else None
-        found.append(attrs.evolve(blank, prior=prior))
+        found.append(attrs.evolve(one, prior=prior))
     return tuple(found)
 
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable
 from typing import Any
 
@@ -68,7 +69,10 @@ def least(
     misfit: Misfit, start: np.ndarray, sigma: float, loss: str, fixed: tuple[int, float] | None = None,
     watch: Callable[[int], None] = lambda count: None,
 ) -> Least:  # fmt: skip
-    """Search from a start, all of whose points have states; one of the numbers may be fixed at a value of its x."""
+    """Search from a start; one of the numbers may be fixed at a value of its x.
+
+    The cost is infinite where the muscle of the start has no state at some point.
+    """
     from scipy.optimize import least_squares
 
     moving = np.array([fixed is None or k != fixed[0] for k in range(len(misfit.free))])
@@ -92,9 +96,11 @@ def least(
         return rows_of(misfit, whole(part), sigma)[1][:, moving]
 
     begin = np.clip(start[moving], 1e-6, 1.0 - 1e-6)
+    found = residuals(begin)
     if not moving.any():
-        found = residuals(begin)
         return Least(whole(begin), np.zeros((len(found), 0)), found, 0.5 * float(found @ found), 1, "fixed", True)
+    if not np.isfinite(found).all():
+        return Least(whole(begin), jacobian(begin), found, math.inf, 1, "a point is beyond reach at the start", False)
     solved = least_squares(
         residuals, begin, jacobian, bounds=(0.0, 1.0), method="trf", x_scale=1.0, loss=_loss(loss, n),
         ftol=CLOSE, xtol=CLOSE, gtol=1e-12, max_nfev=200,

@@ -61,7 +61,7 @@ def _columns(fit: Fitted) -> dict[str, Any]:
     """What is drawn, in the units that people see."""
     data = fit.data
     return {
-        "contraction": 100.0 * (1.0 - data["length"].values / float(fit.muscle.braid.length)),
+        "contraction": 100.0 * (1.0 - data["length"].values / float(fit.muscle.rest_length)),
         "pressure": style.shown(data["pressure"].values, "Pa"),
         "force": data["force"].values, "predicted": data["predicted"].values, "residual": fit.residuals,
     }  # fmt: skip
