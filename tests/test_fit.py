@@ -296,3 +296,43 @@ def test_an_angle_from_the_axis(exact: mk.Data) -> None:
     assert_allclose(fit.values["braid.angle"], np.radians(53.0), rtol=1e-6)
     assert_allclose(fit.muscle.braid.angle, np.radians(37.0), rtol=1e-6)
     assert fit.predict(mk.Isobaric(length="100 mm", pressure="1 bar")).error.max() < 0.01
+
+
+def test_a_number_that_is_zero_is_where_it_starts() -> None:
+    """Inside its range, zero is a start like any other; outside, the middle is taken."""
+    free = free_numbers(MUSCLE, {"chamber.law.c2": "0 kPa to 10 kPa", "chamber.law.c1": "20 kPa to 40 kPa"}, {})
+    assert [one.start for one in free] == [0.0, 3e4]
+
+
+def test_a_start_without_states_ends_no_search(exact: mk.Data) -> None:
+    """As along a profile that meets full extension."""
+    free = free_numbers(TURNED, {"braid.angle": "20 deg to 60 deg", "chamber.law.c1": "2 kPa to 40 kPa"}, {})
+    misfit = Misfit(TURNED, free, Measured.of(TURNED, (exact,), {}), 24)
+    lost = least(misfit, np.array([0.99, 0.5]), 1.0, "linear")
+    assert not lost.converged
+    assert lost.cost == np.inf
+    assert "beyond reach" in lost.message
+
+
+def test_contractions_are_of_the_whole_rest_length() -> None:
+    """With a dead length, of both; and a rest length that is itself free makes no length of a contraction."""
+    muscle = MUSCLE.replace("fittings", mk.Fittings(dead_length="10 mm"))
+    curve = mk.run(muscle, mk.Isobaric(length="90 mm to 105 mm", pressure="1 bar", points=4))
+    table = {"contraction": curve.contraction, "pressure [Pa]": curve.pressure, "force [N]": curve.force}
+    data = mk.read_data(table)
+    assert_allclose(data.lengths(muscle), curve.length, rtol=1e-12)
+    fit = mk.fit(muscle.replace("braid.angle", "36 deg"), data, ANGLE, starts=1)
+    assert_allclose(fit.values["braid.angle"], np.radians(37.0), rtol=1e-6)
+    for name, span in (("braid.length", "80 mm to 90 mm"), ("fittings.dead_length", "5 mm to 15 mm")):
+        with pytest.raises(mk.SpecError, match="refer to the rest length"):
+            mk.fit(muscle, data, {name: span})
+
+
+def test_models_are_compared_with_weights(exact: mk.Data) -> None:
+    """A weight is of no use to a fold that leaves its test out."""
+    table = {"length [m]": exact.length, "pressure [Pa]": exact.pressure, "force [N]": exact.force}
+    data = mk.read_data(table | {"test": np.repeat(["a", "b", "c", "d"], len(exact) // 4)}, tests="test")
+    models = {"as made": (TURNED, ANGLE), "too wide": (TURNED.replace("braid.radius", "13 mm"), ANGLE)}
+    found = mk.compare_models(models, data, weights={"a": 2.0}, starts=1)
+    assert found.best == "as made"
+    assert_allclose(found.fits["as made"].forces(data), data.force, atol=1e-3)
