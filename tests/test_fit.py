@@ -9,7 +9,7 @@ from scipy.stats import t as student
 
 import mckibben as mk
 from mckibben.fitting.free import Free, free_numbers
-from mckibben.fitting.misfit import Measured, Misfit
+from mckibben.fitting.misfit import Misfit, Points
 from mckibben.fitting.search import least
 
 pytestmark = pytest.mark.experiments
@@ -51,7 +51,7 @@ def misfit_of(muscle: mk.Muscle, data: mk.Data, names: tuple[str, ...]) -> Misfi
     )
     offsets = (("length", "m", 1e-3), ("pressure", "Pa", 1e4), ("force", "N", 5.0))
     more = tuple(Free(f"offset.{name}", unit, -size, size, 0.1 * size) for name, unit, size in offsets)
-    return Misfit(muscle, (*free, *more), Measured.of(muscle, (data,), {}), 24)
+    return Misfit(muscle, (*free, *more), Points.of(muscle, (data,), {}), 24)
 
 
 def _numbers(muscle: mk.Muscle) -> list[tuple[str, float, str]]:
@@ -102,7 +102,8 @@ def test_what_is_known_comes_back(exact: mk.Data) -> None:
     assert_allclose(fit.values["chamber.law.c1"], 8500.0, rtol=1e-4)
     assert fit.rms < 1e-4
     assert fit.muscle.braid.angle == fit.values["braid.angle"]
-    assert "chamber.law.c2" in fit.muscle.assumed or not MUSCLE.assumed
+    assert "chamber.law.c2" in fit.muscle.assumed
+    assert "chamber.law.c1" not in fit.muscle.assumed
 
 
 def test_noise(found: mk.Fit) -> None:
@@ -118,7 +119,7 @@ def test_noise(found: mk.Fit) -> None:
 def test_errors_are_those_of_the_linear_model(found: mk.Fit, noisy: mk.Data) -> None:
     """Covariance s^2 (J^T J)^-1, with J by central differences in the numbers themselves."""
     names = found.numbers
-    misfit = Misfit(found.muscle, free_numbers(found.muscle, FREE, {}), Measured.of(MUSCLE, (noisy,), {}), 24)
+    misfit = Misfit(found.muscle, free_numbers(found.muscle, FREE, {}), Points.of(MUSCLE, (noisy,), {}), 24)
     x, step = misfit.start, 1e-4
     columns = []
     for k, one in enumerate(misfit.free):
@@ -136,7 +137,7 @@ def test_profiles(noisy: mk.Data, found: mk.Fit) -> None:
     assert_allclose(fit.data["value"], found.data["value"], rtol=1e-5)
     s2 = np.sum(fit.residuals**2) / (len(fit.residuals) - 2)
     t2 = student.ppf(0.975, len(fit.residuals) - 2) ** 2
-    misfit = Misfit(START, free_numbers(START, FREE, {}), Measured.of(START, (noisy,), {}), 24)
+    misfit = Misfit(START, free_numbers(START, FREE, {}), Points.of(START, (noisy,), {}), 24)
     for k, one in enumerate(misfit.free):
         for end in fit.intervals.loc[one.name]:
             other = least(misfit, misfit.start, 1.0, "linear", (k, one.x(float(end))))
@@ -177,7 +178,6 @@ def test_instruments_that_are_off(exact: mk.Data) -> None:
     fit = mk.fit(TURNED, data, ANGLE, offsets={"force": "5 N"}, starts=1)
     assert_allclose(fit.values["braid.angle"], np.radians(37.0), rtol=3e-4)
     assert_allclose(fit.values["offset.force"], 3.0, atol=0.03)
-    assert "off by" not in "".join(fit.notes)
 
 
 def test_points_far_off_count_less(noisy: mk.Data) -> None:
@@ -307,7 +307,7 @@ def test_a_number_that_is_zero_is_where_it_starts() -> None:
 def test_a_start_without_states_ends_no_search(exact: mk.Data) -> None:
     """As along a profile that meets full extension."""
     free = free_numbers(TURNED, {"braid.angle": "20 deg to 60 deg", "chamber.law.c1": "2 kPa to 40 kPa"}, {})
-    misfit = Misfit(TURNED, free, Measured.of(TURNED, (exact,), {}), 24)
+    misfit = Misfit(TURNED, free, Points.of(TURNED, (exact,), {}), 24)
     lost = least(misfit, np.array([0.99, 0.5]), 1.0, "linear")
     assert not lost.converged
     assert lost.cost == np.inf

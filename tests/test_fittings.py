@@ -150,8 +150,8 @@ def test_a_sweep_of_the_dead_length(tmp_path: Any) -> None:
     over = {"fittings.dead_length": [0.0, DEAD]}
     held = mk.sweep(hiding(), mk.Isometric(length="115 mm", pressure="1 bar"), over, workers=1)
     assert (held["method"] == 0).all()
-    shifted = mk.solve(mk.presets.paper(), length=0.115 - DEAD, pressure="1 bar").force
-    assert_allclose(held["force"].values[:, 0], [101.22143528, shifted], rtol=1e-9)
+    alone = [mk.solve(mk.presets.paper(), length=0.115 - dead, pressure="1 bar").force for dead in (0.0, DEAD)]
+    assert_allclose(held["force"].values[:, 0], alone, rtol=1e-9)
     parts = mk.sweep(hiding(), mk.Isometric(contraction="-10 %", pressure="1 bar"), over, workers=1)
     assert_allclose(parts["length"].values[:, 0], [1.1 * 0.085, 1.1 * (0.085 + DEAD)], rtol=1e-9)
 

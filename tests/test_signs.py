@@ -14,7 +14,7 @@ from mckibben.measure.signs import after
 from mckibben.model.column import bending_stiffness, column_load
 from mckibben.model.cylinder import cylinder_force
 from mckibben.model.energy import stored
-from mckibben.model.jamming import jamming_angles, spacing
+from mckibben.model.jamming import across, jamming_angles
 from mckibben.model.parameters import parameters
 from mckibben.model.point import Point
 from mckibben.model.span import bulging_pressure
@@ -47,7 +47,7 @@ def test_jamming_at_both_ends(angle: float, said: str) -> None:
         np.sin(2.0 * np.array(jammed)), 56 * 0.36e-3 * math.cos(PAPER.braid.angle) / (2.0 * math.pi * 0.0125)
     )
     r = 0.0125 * np.cos(jammed) / math.cos(PAPER.braid.angle)
-    assert_allclose(spacing(r, np.array(jammed), 56), 0.36e-3, rtol=1e-12)
+    assert_allclose(across(r, np.array(jammed), 56), 0.36e-3, rtol=1e-12)
     theta = math.radians(angle)
     assert said in states(thick, theta)[0]
     assert states(thick, theta + math.radians(0.1 if angle < 45.0 else -0.1)) == []

@@ -32,8 +32,6 @@ REPRODUCE = examples(
     "mckibben reproduce", "mckibben reproduce -o paper --force", "mckibben reproduce --measured a=lab.csv"
 )
 PICTURES = {".png": "picture", ".pdf": "print", ".svg": "web"}
-
-
 PIXELS = 1200
 """Least width of a picture in pixels, for slides and screens."""
 

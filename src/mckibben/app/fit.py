@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from mckibben.app.console import COMPLETE, INCOMPLETE, command, examples, say, show_json
+from mckibben.app.draw import PICTURES, PIXELS
 from mckibben.app.options import AsJson, Quiet
 
 if TYPE_CHECKING:
@@ -21,7 +22,6 @@ EPILOG = examples(
     "mckibben fit fit.toml --muscle fitted.toml --set options.starts=20",
     "mckibben plot fit.nc",
 )
-PICTURES = {".png": "picture", ".pdf": "print", ".svg": "web"}
 TOML = {".toml": "a muscle for case files"}
 
 
@@ -109,7 +109,6 @@ def _written(found: Fit, places: dict[str, Path | None], force: bool) -> dict[st
         import matplotlib
 
         matplotlib.use("Agg")  # draws to files only, without a window
-        from mckibben.app.draw import PIXELS
         from mckibben.view import style
         from mckibben.view.fit import fitted as drawn
 

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 from mckibben.app.console import COMPLETE, INCOMPLETE, command, examples, say, show_json, table
+from mckibben.app.draw import PIXELS
 from mckibben.app.options import AsJson, Force, Quiet, Tolerance
 
 if TYPE_CHECKING:
@@ -27,8 +28,6 @@ FORCE_MAP = examples(
     'mckibben force-map case.toml --length "90 mm to 115 mm" --pressure "0.2 to 1 bar" -o map.csv',
 )
 OUTPUTS = {".csv": "table", ".png": "picture", ".pdf": "the same for print", ".svg": "the same for the web"}
-PIXELS = 1200
-"""Least width of a picture in pixels."""
 
 Case = Annotated[Path, typer.Argument(metavar="CASE.toml", help="the case file: a muscle; a test in it is not used")]
 Overrides = Annotated[

@@ -6,7 +6,7 @@ import math
 from collections.abc import Iterator
 
 from mckibben.model.extension import longest
-from mckibben.model.jamming import jamming_angles
+from mckibben.model.jamming import across, jamming_lengths
 from mckibben.spec import Muscle, SpecError, Test
 from mckibben.spec.angle import MAGIC, both_ways, tendency
 from mckibben.units import show
@@ -31,12 +31,10 @@ def derived(muscle: Muscle) -> Iterator[tuple[str, str, str]]:
         yield "shear modulus", show(muscle.chamber.law.shear_modulus, "kPa"), "of the chamber, at small strain"
     yield from _chamber(muscle)
     if fibre.diameter is not None:
-        room = 2.0 * math.pi * braid.radius * math.sin(braid.angle) / (braid.fibres // 2)
+        room = across(braid.radius, braid.angle, braid.fibres)
         said = f"between neighbouring fibres as made: {room / fibre.diameter:.3g} diameters; the braid jams at 1"
         yield "jamming room", show(room, "m"), said
-        angles = jamming_angles(braid.radius, braid.angle, braid.fibres, fibre.diameter)
-        dead = muscle.rest_length - braid.length
-        ends = [show(braid.length * math.sin(one) / math.sin(braid.angle) + dead, "m", 4) for one in angles]
+        ends = [show(length, "m", 4) for length in jamming_lengths(muscle)]
         yield "jammed", f"below {ends[0]}, beyond {ends[1]}", "length of the cylinder whose neighbouring fibres touch"
 
 

@@ -11,7 +11,7 @@ import numpy as np
 from mckibben.data.values import Data
 from mckibben.experiments.run import run
 from mckibben.fitting.free import Free, put_in
-from mckibben.fitting.misfit import Measured, Misfit
+from mckibben.fitting.misfit import Misfit, Points
 from mckibben.fitting.search import Least
 from mckibben.fitting.uncertain import Spread
 from mckibben.measure.report import versions
@@ -84,7 +84,7 @@ class Fit(Fitted):
         good = np.isfinite(points).all(axis=1) & np.isfinite(curve.force)
         if good.any():
             count = int(good.sum())
-            there = Measured(points[good], np.zeros(count), np.full(count, "curve"), np.full(count, ""), np.ones(count))
+            there = Points(points[good], np.zeros(count), np.full(count, "curve"), np.full(count, ""), np.ones(count))
             misfit = Misfit(self.muscle, free, there, int(self.data.attrs["unknowns"]))
             x = misfit.start
             slopes = misfit(x).slopes / np.array([one.slope(float(at)) for one, at in zip(free, x, strict=True)])
@@ -105,7 +105,7 @@ class Fit(Fitted):
         True
         """
         several = (data,) if isinstance(data, Data) else tuple(data)
-        misfit = Misfit(self.muscle, self.free, Measured.of(self.muscle, several, {}), int(self.data.attrs["unknowns"]))
+        misfit = Misfit(self.muscle, self.free, Points.of(self.muscle, several, {}), int(self.data.attrs["unknowns"]))
         return misfit(misfit.start).force
 
     @property

@@ -11,7 +11,7 @@ from mckibben.data.values import Data
 from mckibben.experiments.foresee import refuse_friction
 from mckibben.fitting.answer import Fit, answer
 from mckibben.fitting.free import Free, free_numbers, offsets_of
-from mckibben.fitting.misfit import Measured, Misfit
+from mckibben.fitting.misfit import Misfit, Points
 from mckibben.fitting.notes import notes_on
 from mckibben.fitting.search import LOSSES, Least, candidates, cost_of, least
 from mckibben.fitting.uncertain import Spread, profile, spread_of
@@ -140,7 +140,7 @@ def _known(force_error: Any) -> float | None:
     return size
 
 
-def _measured(muscle: Muscle, several: tuple[Data, ...], weights: Mapping[str, float]) -> Measured:
+def _measured(muscle: Muscle, several: tuple[Data, ...], weights: Mapping[str, float]) -> Points:
     """The points to fit, with their weights; a test of weight 0 is left out."""
     tests = dict.fromkeys(name for data in several for name in data.tests)
     for name, weight in weights.items():
@@ -148,7 +148,7 @@ def _measured(muscle: Muscle, several: tuple[Data, ...], weights: Mapping[str, f
             raise SpecError(f"weights.{name}", allowed="is no test of these data", advice=nearest(str(name), tests))
         if not 0.0 <= float(weight) < 1e12:
             raise SpecError(f"weights.{name}", weight, "must be at least 0")
-    measured = Measured.of(muscle, several, weights)
+    measured = Points.of(muscle, several, weights)
     return measured.some(measured.weights > 0.0)
 
 

@@ -24,11 +24,11 @@ from mckibben.solver.system import Unknowns
 from mckibben.spec import Muscle, SpecError
 from mckibben.spec.declared import evolved, numbers
 
-__all__ = ["Measured", "Misfit", "Seen"]
+__all__ = ["Misfit", "Points", "Seen"]
 
 
 @attrs.frozen(eq=False)
-class Measured:
+class Points:
     """What is fitted: n points."""
 
     points: np.ndarray  #: length [m] and pressure [Pa] (n, 2)
@@ -38,7 +38,7 @@ class Measured:
     weights: np.ndarray  #: (n)
 
     @classmethod
-    def of(cls, muscle: Muscle, several: tuple[Data, ...], weights: Mapping[str, float]) -> Measured:
+    def of(cls, muscle: Muscle, several: tuple[Data, ...], weights: Mapping[str, float]) -> Points:
         """Points of several sets of data, with weights by the names of tests, 1 where none is given."""
         parts = [
             (
@@ -52,9 +52,9 @@ class Measured:
         points, force, tests, branches = (np.concatenate(column) for column in zip(*parts, strict=True))
         return cls(points, force, tests, branches, np.array([float(weights.get(name, 1.0)) for name in tests.tolist()]))
 
-    def some(self, chosen: np.ndarray) -> Measured:
+    def some(self, chosen: np.ndarray) -> Points:
         """Some of the points."""
-        return Measured(*(getattr(self, field.name)[chosen] for field in attrs.fields(Measured)))
+        return Points(*(getattr(self, field.name)[chosen] for field in attrs.fields(Points)))
 
 
 @attrs.frozen(eq=False)
@@ -76,7 +76,7 @@ class Misfit:
 
     muscle: Muscle
     free: tuple[Free, ...]
-    measured: Measured
+    measured: Points
     size: int
     orders: tuple[np.ndarray, ...] = attrs.field(init=False)
     places: tuple[int, ...] = attrs.field(init=False)

@@ -8,7 +8,7 @@ import numpy as np
 from mckibben.compiled.arrays import Array
 from mckibben.compiled.kernel import kernel
 from mckibben.model.column import bending_stiffness, column_load
-from mckibben.model.jamming import jamming_angles, spacing
+from mckibben.model.jamming import across, jamming_lengths
 from mckibben.model.parameters import Parameters, parameters
 from mckibben.model.span import bulging_pressure
 from mckibben.spec import Muscle
@@ -39,16 +39,15 @@ def jamming(muscle: Muscle, steps: Columns, fields: Columns) -> list[str]:
     braid, diameter = muscle.braid, muscle.braid.fibre.diameter
     if diameter is None:
         return []
-    apart = spacing(fields["r"], fields["theta"], braid.fibres)
+    apart = across(fields["r"], fields["theta"], braid.fibres)
     hit = (apart < diameter).any(axis=1)
     if not hit.any():
         return []
-    flat, steep = jamming_angles(braid.radius, braid.angle, braid.fibres, diameter)
+    flat, steep = jamming_lengths(muscle)
     k = int(np.flatnonzero(hit)[0])
     short = fields["theta"][k, int(np.nanargmin(apart[k]))] < 0.25 * np.pi
-    angle, where = (flat, "flat around it, as below") if short else (steep, "steep along it, as beyond")
-    length = braid.length * np.sin(angle) / np.sin(braid.angle) + muscle.rest_length - braid.length
-    said = f"neighbouring fibres touch, {where} {show(float(length), 'm', 4)} anywhere: the braid jams, which the model"
+    length, where = (flat, "flat around it, as below") if short else (steep, "steep along it, as beyond")
+    said = f"neighbouring fibres touch, {where} {show(length, 'm', 4)} anywhere: the braid jams, which the model"
     return _first(hit, steps, f"{said} ignores; fewer or thinner fibres leave more room")
 
 
@@ -112,7 +111,7 @@ def bulging(muscle: Muscle, steps: Columns, fields: Columns) -> list[str]:
     modulus = getattr(chamber and chamber.law, "shear_modulus", None)
     if chamber is None or not chamber.inside or diameter is None or modulus is None:
         return []
-    width = np.maximum(spacing(fields["r"], fields["theta"], braid.fibres) - diameter, 1e-9 * braid.radius)
+    width = np.maximum(across(fields["r"], fields["theta"], braid.fibres) - diameter, 1e-9 * braid.radius)
     wall = chamber.wall_thickness * fields["stretch_thickness"]
     bears = bulging_pressure(width, wall, modulus).min(axis=1)
     hit = steps["pressure"] > bears
