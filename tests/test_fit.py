@@ -11,6 +11,7 @@ import mckibben as mk
 from mckibben.fitting.free import Free, free_numbers
 from mckibben.fitting.misfit import Misfit, Points
 from mckibben.fitting.search import least
+from mckibben.fitting.uncertain import members
 
 pytestmark = pytest.mark.experiments
 
@@ -336,3 +337,31 @@ def test_models_are_compared_with_weights(exact: mk.Data) -> None:
     found = mk.compare_models(models, data, weights={"a": 2.0}, starts=1)
     assert found.best == "as made"
     assert_allclose(found.fits["as made"].forces(data), data.force, atol=1e-3)
+
+
+def test_free_contractions_alone() -> None:
+    """No force is measured but none: residuals have no per cent of it, and the fit is as good."""
+    curve = mk.run(MUSCLE, mk.FreeContraction(pressure="0.4 to 1 bar", points=4))
+    table = {"length [m]": curve.length, "pressure [Pa]": curve.pressure, "force [N]": np.zeros(4)}
+    fit = mk.fit(TURNED, mk.read_data(table), ANGLE, starts=1)
+    assert_allclose(fit.values["braid.angle"], np.radians(37.0), rtol=1e-6)
+    assert np.isnan([fit.percent, fit.explained]).all()
+    assert "%" not in repr(fit)
+    assert mk.plot(fit).axes
+
+
+def test_profiles_of_one_number_under_another_loss(noisy: mk.Data) -> None:
+    """At the ends the loss, not the sum of squares, has grown by t^2 times the variance."""
+    fit = mk.fit(TURNED, noisy, ANGLE, loss="huber", force_error="0.2 N", starts=1, profiles=True)
+    free = free_numbers(TURNED, ANGLE, {})
+    misfit = Misfit(TURNED, free, Points.of(TURNED, (noisy,), {}), 24)
+    best = least(misfit, misfit.start, 0.2, "huber").cost
+    for end in fit.intervals.loc["braid.angle"]:
+        other = least(misfit, misfit.start, 0.2, "huber", (0, free[0].x(float(end)))).cost
+        assert_allclose(2.0 * (other - best), student.ppf(0.975, len(noisy) - 1) ** 2, rtol=1e-2)
+
+
+def test_directions_of_many_numbers() -> None:
+    """Of twenty equal parts none is large, and all belong."""
+    assert members(np.full(20, 20**-0.5)).all()
+    assert members(np.array([0.9, 0.4, 0.17])).tolist() == [True, True, False]

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from typing import TYPE_CHECKING, Any
 
 from mckibben.app.console import say, table
@@ -38,8 +39,8 @@ def _percent(value: float | None) -> str:
 
 
 def _goodness(fit: Fitted) -> str:
-    parts = [f"rms {fit.rms:.3g} N ({fit.percent:.2g} % of the largest force)", f"largest {fit.largest:.3g} N"]
-    return ", ".join(parts) + f", R² {fit.explained:.6f}"
+    explained = "" if math.isnan(fit.explained) else f", R² {fit.explained:.6f}"
+    return f"{fit.goodness}, largest {fit.largest:.3g} N{explained}"
 
 
 def _tests(fit: Fitted) -> list[dict[str, Any]]:
@@ -61,8 +62,6 @@ def _tests(fit: Fitted) -> list[dict[str, Any]]:
 
 def as_json(fit: Fitted, seconds: float, tried: int, files: dict[str, str | None]) -> dict[str, Any]:
     """The whole fit for JSON, in SI units; None for what is not determined, and for NaN and infinity."""
-    import math
-
     from mckibben.results.fit import NUMBERS
     from mckibben.spec.text import to_mapping
 

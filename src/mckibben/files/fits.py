@@ -110,7 +110,7 @@ def save_csv(fit: Fitted, path: str | PathLike[str], force: bool = False) -> Pat
 def _notes(fit: Fitted) -> Iterator[str]:
     about = fit.data.attrs
     yield f"a fit to {about['source']}, made by mckibben {about['mckibben_version']}"
-    yield f"rms {fit.rms:.4g} N, {fit.percent:.3g} % of the largest force; R squared {fit.explained:.6g}"
+    yield f"{fit.goodness}; R squared {fit.explained:.6g}"
     yield "residual: force of the fitted muscle (offsets included) less the measured one; units are SI, in brackets"
     yield ""
     yield f"the numbers, with intervals at {100.0 * about['level']:g} %:"

@@ -8,7 +8,7 @@ import numpy as np
 
 from mckibben.fitting.misfit import Misfit
 from mckibben.fitting.search import Least
-from mckibben.fitting.uncertain import SHARE, Spread
+from mckibben.fitting.uncertain import Spread, members
 
 __all__ = ["notes_on"]
 
@@ -23,11 +23,11 @@ def notes_on(misfit: Misfit, best: Least, spread: Spread) -> list[str]:
     names = [one.name for one in misfit.free]
     notes = [] if best.converged else [f"the search was ended before it had settled: {best.message}"]
     for direction in spread.directions:
-        members = [name for name, share in zip(names, direction, strict=True) if abs(share) > SHARE]
-        if len(members) == 1:
-            notes.append(f"the data say nothing of {members[0]} within its bounds: leave it out, or give a prior")
+        own = [name for name, belongs in zip(names, members(direction).tolist(), strict=True) if belongs]
+        if len(own) == 1:
+            notes.append(f"the data say nothing of {own[0]} within its bounds: leave it out, or give a prior")
         else:
-            together = " and ".join([", ".join(members[:-1]), members[-1]])
+            together = " and ".join([", ".join(own[:-1]), own[-1]])
             notes.append(f"the data determine only a combination of {together}: free fewer of them, or give a prior")
     lost = spread.undetermined
     for (i, first), (j, second) in combinations(enumerate(names), 2):

@@ -96,13 +96,14 @@ def least(
         return rows_of(misfit, whole(part), sigma)[1][:, moving]
 
     begin = np.clip(start[moving], 1e-6, 1.0 - 1e-6)
-    found = residuals(begin)
+    found, by = residuals(begin), _loss(loss, n)
     if not moving.any():
-        return Least(whole(begin), np.zeros((len(found), 0)), found, 0.5 * float(found @ found), 1, "fixed", True)
+        counted = found**2 if isinstance(by, str) else by(found**2)[0]
+        return Least(whole(begin), np.zeros((len(found), 0)), found, 0.5 * float(counted.sum()), 1, "fixed", True)
     if not np.isfinite(found).all():
         return Least(whole(begin), jacobian(begin), found, math.inf, 1, "a point is beyond reach at the start", False)
     solved = least_squares(
-        residuals, begin, jacobian, bounds=(0.0, 1.0), method="trf", x_scale=1.0, loss=_loss(loss, n),
+        residuals, begin, jacobian, bounds=(0.0, 1.0), method="trf", x_scale=1.0, loss=by,
         ftol=CLOSE, xtol=CLOSE, gtol=1e-12, max_nfev=200,
     )  # fmt: skip
     x = whole(solved.x)

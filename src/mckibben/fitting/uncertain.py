@@ -11,7 +11,7 @@ import numpy as np
 from mckibben.fitting.misfit import Misfit
 from mckibben.fitting.search import Least, least
 
-__all__ = ["OPEN", "Spread", "profile", "spread_of"]
+__all__ = ["OPEN", "Spread", "members", "profile", "spread_of"]
 
 OPEN = 0.5
 """Standard error along a direction, in parts of the ranges, from which on the data do not determine it."""
@@ -44,8 +44,14 @@ class Spread:
     @property
     def undetermined(self) -> np.ndarray:
         """Which numbers belong to a direction that is open (k)."""
-        shares = [np.abs(v) > SHARE for v in self.directions]
-        return np.any(shares, axis=0) if shares else np.zeros(len(self.covariance), bool)
+        found = [members(direction) for direction in self.directions]
+        return np.any(found, axis=0) if found else np.zeros(len(self.covariance), bool)
+
+
+def members(direction: np.ndarray) -> np.ndarray:
+    """Which numbers belong to a direction (k); one of many small parts has those of the largest."""
+    size = np.abs(direction)
+    return size >= min(SHARE, float(size.max()))
 
 
 def spread_of(found: Least, known_size: bool) -> Spread:

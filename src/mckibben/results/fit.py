@@ -80,14 +80,26 @@ class Fitted:
 
     @property
     def percent(self) -> float:
-        """`rms` in per cent of the largest measured force."""
-        return 100.0 * self.rms / float(np.abs(self.data["force"].values).max())
+        """`rms` in per cent of the largest measured force; NaN where all of them are zero, as of free contractions."""
+        return self.share(self.rms)
+
+    def share(self, force: float) -> float:
+        """A force [N] in per cent of the largest measured one; NaN where all of them are zero."""
+        most = float(np.abs(self.data["force"].values).max())
+        return 100.0 * force / most if most else float("nan")
+
+    @property
+    def goodness(self) -> str:
+        """`rms`, in parts of the largest measured force too where there is one, in words."""
+        said = "" if np.isnan(self.percent) else f" ({self.percent:.2g} % of the largest force)"
+        return f"rms {self.rms:.3g} N{said}"
 
     @property
     def explained(self) -> float:
-        """Share of the variance of the measured forces that the fit explains, R squared."""
+        """Share of the variance of the measured forces that the fit explains, R squared; NaN where they do not vary."""
         force = self.data["force"].values
-        return 1.0 - float(np.sum(self.residuals**2) / np.sum((force - force.mean()) ** 2))
+        spread = float(np.sum((force - force.mean()) ** 2))
+        return 1.0 - float(np.sum(self.residuals**2)) / spread if spread else float("nan")
 
     @property
     def notes(self) -> tuple[str, ...]:
@@ -146,4 +158,4 @@ class Fitted:
 
     def __repr__(self) -> str:
         counts = f"{len(self.numbers)} numbers to {len(self.residuals)} points"
-        return f"<Fit: {counts}, rms {self.rms:.3g} N ({self.percent:.2g} % of the largest force)>"
+        return f"<Fit: {counts}, {self.goodness}>"

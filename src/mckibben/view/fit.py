@@ -177,10 +177,9 @@ def _said(figure: Figure, fit: Fitted, tests: int) -> None:
     """The heading, and the notes below."""
     name = f'Muscle "{fit.muscle.name}"' if fit.muscle.name else "Muscle without a name"
     many = f"{len(fit.residuals)} points of {tests} test{'s' if tests != 1 else ''}"
-    most = float(np.abs(fit.data["force"].values).max())
-    worst = f"{fit.largest:.3g} N ({100.0 * fit.largest / most:.2g} %)"
-    rms = f"rms {fit.rms:.3g} N ({fit.percent:.2g} % of the largest force)"
-    said = f"{name}, {many}: {rms}, largest difference {worst}"
+    share = fit.share(fit.largest)
+    worst = f"{fit.largest:.3g} N" + ("" if np.isnan(share) else f" ({share:.2g} %)")
+    said = f"{name}, {many}: {fit.goodness}, largest difference {worst}"
     style.heading(figure, said.replace(" %", "\u00a0%").replace(" N", "\u00a0N"))  # no line begins with a unit
     style.note(figure, f"Measured: {fit.data.attrs['source']}.")
     found = [f"{name} {_with_error(row['value'], row['error'])}"
