@@ -14,7 +14,7 @@ endif
 STAMP := $(VENV)/.mckibben-installed
 
 .DEFAULT_GOAL := help
-.PHONY: help setup demo test lint types docs examples bench pictures tables lock clean
+.PHONY: help setup demo test lint types docs examples bench pictures tables notebook lock clean
 
 help:
 	@echo "make setup      the virtual environment $(VENV), from requirements.lock"
@@ -23,7 +23,7 @@ help:
 	@echo "make lint       style;  make types  static types;  make docs  the documentation, into docs/_build/html"
 	@echo "make examples   every script of examples/;  make bench  the benchmarks, into out"
 	@echo "make pictures   the pictures of the README and the documentation, into docs/pictures"
-	@echo "make tables     the tables of docs/effects.md"
+	@echo "make tables     the tables of docs/effects.md;  make notebook  the tutorial as a notebook, run, into out"
 	@echo "make lock       renew requirements.lock from pyproject.toml;  make clean  delete what was built"
 
 setup: $(STAMP)
@@ -69,6 +69,12 @@ bench: setup # with nothing compiled yet, so that cold is cold
 
 pictures: setup
 	$(BIN)/python docs/pictures.py
+
+notebook: setup
+	@mkdir -p out
+	sed -E 's#\]\((pictures|theory|howto)#](../docs/\1#' docs/tutorial.md | $(BIN)/jupytext --quiet --from md --to ipynb --output out/tutorial.ipynb
+	cd out && ../$(BIN)/jupyter execute --inplace tutorial.ipynb
+	@echo "out/tutorial.ipynb"
 
 tables: setup
 	$(BIN)/python docs/effects.py

@@ -9,9 +9,9 @@ import pytest
 import xarray as xr
 
 import mckibben as mk
-from mckibben.app.fields import muscle_rows
 from mckibben.app.look import _short
 from mckibben.spec.angle import MAGIC, as_written, tendency
+from mckibben.spec.rows import muscle_rows
 from mckibben.spec.text import from_mapping, muscle_from_mapping, to_mapping, to_toml
 from mckibben.spec.vary import changed
 from mckibben.sweeps.groups import groups

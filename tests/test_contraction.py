@@ -8,9 +8,9 @@ import numpy as np
 import pytest
 
 import mckibben as mk
-from mckibben.app.fields import test_rows as rows_of
 from mckibben.experiments import limits
 from mckibben.spec import numbers
+from mckibben.spec.rows import test_rows as rows_of
 from mckibben.spec.text import apply_overrides, from_mapping, test_from_mapping, to_mapping, to_toml
 from mckibben.spec.vary import changed
 from mckibben.sweeps.groups import group_of, groups

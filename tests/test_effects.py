@@ -68,6 +68,13 @@ def test_friction_is_half_of_what_lies_between_lengthening_and_shortening(found:
     assert_allclose(own.table.loc["stretch of the fibres", "force [%]"], found.table["force [%]"].min())
 
 
+def test_a_notebook_shows_them(found: mk.Effects) -> None:
+    page = found._repr_html_()
+    assert page is not None
+    assert f"{found.table.loc['stretch of the fibres', 'force [%]']:.4g}" in page
+    assert page.count("<img") == 1
+
+
 def test_the_page_has_the_table(found: mk.Effects) -> None:
     """docs/effects.md holds what docs/effects.py makes; of its three muscles the one that is computed here anyway."""
     docs = Path(__file__).parent.parent / "docs"

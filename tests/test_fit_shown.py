@@ -134,6 +134,10 @@ def test_the_picture_of_a_fit(fit: mk.Fit) -> None:
     assert "are assumed" in figure.get_supxlabel()
     with pytest.raises(mk.SpecError, match="is for a result"):
         mk.plot(fit, kind="tension")
+    page = fit._repr_html_()
+    assert page is not None
+    assert page.count("<img") == 1
+    assert str(fit.table.loc["braid.angle", "value"]) in page
 
 
 @pytest.mark.parametrize("tests", [1, 3, 30])

@@ -2,6 +2,7 @@
 
 import math
 from collections.abc import Callable
+from typing import Any
 
 import jax
 import jax.numpy as jnp
@@ -9,6 +10,7 @@ import numpy as np
 import pytest
 from scipy.optimize import brentq
 
+import mckibben as mk
 from mckibben import spec
 from mckibben.model.chamber import EIGHT_CHAINS, LAWS, energy_density
 from mckibben.model.parameters import parameters
@@ -208,6 +210,14 @@ def test_a_law_of_the_users_own() -> None:
     assert_same(np.array(found), np.array(expected), 1e-14)
     for load in LOADS:
         assert_same(stress(own.chamber.law, load), stress(built_in.chamber.law, load), 2e-15)
+
+
+@pytest.mark.parametrize(("body", "said"), [(lambda l1: 1.0 if l1 > 1.0 else 0.0, "TracerBool"), (None, "TypeError")])
+def test_a_function_that_fails_is_one_message(body: Any, said: str) -> None:
+    law = spec.CustomLaw(function=lambda l1, l2, l3, constants: body(l1))
+    muscle = mk.presets.paper().replace("chamber.law", law)
+    with pytest.raises(spec.SpecError, match=f"chamber.law.function: fails with {said}.* write it with jax.numpy"):
+        mk.solve(muscle, length="115 mm", pressure="1 bar")
 
 
 def test_density_is_that_of_the_wall() -> None:

@@ -34,6 +34,10 @@ def test_rows_and_zeros() -> None:
     assert found.absolute["force"]["chamber.law.c2"] > 0.0
     bars = [bar for bar in mk.plot(found).axes[0].patches if bar.get_width() != 0.0]
     assert len(bars) == len(found.relative) - 1
+    page = found._repr_html_()
+    assert page is not None
+    assert page.count("<img") == 1
+    assert f"{found.relative['force']['braid.angle']:.4g}" in page
 
 
 def test_a_state_that_is_not_there_has_a_reason() -> None:

@@ -17,7 +17,7 @@ import mckibben as mk
 from mckibben.app.cli import app
 from mckibben.app.states import as_json, show
 from mckibben.experiments import limits
-from mckibben.files.table import rows
+from mckibben.results.rows import rows
 from mckibben.spec.text import to_toml
 
 PAPER = mk.presets.paper()

@@ -4,6 +4,8 @@ import sys
 from importlib import import_module
 from typing import Any
 
+from mckibben.shown import drawn_by
+
 _PUBLIC = {
     "mckibben.spec": (
         "ArrudaBoyce", "Braid", "Chamber", "CustomLaw", "Ends", "Fibre", "Fittings", "Friction", "Gent", "Joint",
@@ -41,6 +43,15 @@ _HOME = {name: module for module, names in _PUBLIC.items() for name in names}
 _MODULES = ("presets",)
 
 __all__ = sorted([*_HOME, *_MODULES])
+
+
+def _html(value: Any) -> str:
+    """A value as a notebook shows it."""
+    made: str = import_module("mckibben.view.notebook").html(value)
+    return made
+
+
+drawn_by(_html)
 
 
 def __getattr__(name: str) -> Any:

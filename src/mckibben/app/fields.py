@@ -1,33 +1,17 @@
-"""A muscle and a test as understood, each field with its unit and source; and a case file to start from."""
+"""A case file to start from, and sources as numbers below a table."""
 
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable
 from typing import Any
 
-from mckibben.spec import Muscle, Path, Test, presets, walk
-from mckibben.spec.change import CHANGED
+from mckibben.spec import presets, walk
 from mckibben.spec.declared import Declared
+from mckibben.spec.rows import ASSUMED, HIDDEN
 from mckibben.units import show, to_si
 
-__all__ = ["case_text", "muscle_rows", "numbered", "test_rows"]
-
-ASSUMED = "ASSUMED"
-_HIDDEN = ("name", "assumed")
-
-
-def muscle_rows(muscle: Muscle) -> Iterator[tuple[str, str, str, str]]:
-    """(field, value, meaning, source) of all that is given; the source of an assumed value starts with ASSUMED."""
-    origins = _origins(muscle)
-    for name, declared, value in walk(muscle):
-        if name in _HIDDEN or (value is None and name != "chamber"):
-            continue
-        if name.startswith("chamber.law.") and muscle.chamber is not None:
-            law = muscle.chamber.law
-            if name == f"chamber.law.{_first(law)}":
-                yield "chamber.law", law.name, "hyperelastic law of the elastomer", ""
-        yield name, "none" if value is None else _text(declared, value), declared.meaning, origins.get(name, "")
+__all__ = ["case_text", "numbered"]
 
 
 def numbered(sources: Iterable[str]) -> tuple[list[str], list[str]]:
@@ -43,54 +27,13 @@ def numbered(sources: Iterable[str]) -> tuple[list[str], list[str]]:
     return marks, [f"[{index + 1}] {note}" for index, note in enumerate(notes)]
 
 
-def _first(law: Any) -> str:
-    return next(name for name, _, value in walk(law) if value is not None)
-
-
-def _origins(muscle: Muscle) -> dict[str, str]:
-    """The source of each value that is the same as in the preset of this name, and of those that are assumed."""
-    known: dict[str, str] = {}
-    preset = (muscle.name or "").removesuffix(CHANGED)
-    if preset in presets.names():
-        same = {name: value for name, _, value in walk(presets.get(preset))}
-        for name, _, value in walk(muscle):
-            if name in same and same[name] == value:
-                known[name] = presets.sources(preset).get(name, "")
-    for name in muscle.assumed:
-        known[name] = f"{ASSUMED}: {known[name].removeprefix('assumed: ')}" if name in known else ASSUMED
-    return known
-
-
-def test_rows(test: Test) -> Iterator[tuple[str, str, str]]:
-    """(field, value, meaning) of a test; the steps of a protocol one after the other."""
-    yield "kind", test.kind, (type(test).__doc__ or "").strip().splitlines()[0].rstrip(".")
-    for name, declared, value in walk(test):
-        if declared.kind == "steps":
-            for index, step in enumerate(value):
-                yield from ((f"steps[{index}].{inner}", text, meaning) for inner, text, meaning in test_rows(step))
-        elif value is not None:
-            said = value.called(name) if isinstance(value, Path) else name
-            yield said, _text(declared, value), "contraction 1 - h/H0" if said != name else declared.meaning
-
-
-test_rows.__test__ = False  # type: ignore[attr-defined]  # not a test for pytest to collect
-
-
-def _text(declared: Declared, value: Any) -> str:
-    if declared.kind == "quantity":
-        return declared.explained(value)
-    if declared.kind == "quantities":
-        return ", ".join(declared.text(item) for item in value)
-    return str(value)
-
-
 def case_text(name: str) -> str:
     """A case file with a preset written out, each value with its source, and a test to change."""
     muscle = presets.get(name)
     sources = presets.sources(name)
     tables: dict[str, list[str]] = {"": []}
     for dotted, declared, value in walk(muscle):
-        if value is None or dotted in _HIDDEN:
+        if value is None or dotted in HIDDEN:
             continue
         table, _, key = dotted.rpartition(".")
         note = f"  # {sources[dotted]}" if dotted in sources else ""

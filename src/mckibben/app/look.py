@@ -41,13 +41,14 @@ def check(
     found = asked.case
     from mckibben.app import fields
     from mckibben.experiments import foresee
+    from mckibben.spec.rows import muscle_rows, test_rows
 
     if as_json:
         show_json(_as_json(asked))
         return
     name = f' "{found.muscle.name}"' if found.muscle.name else ""
     columns = ("field", "value", "meaning", "source")
-    rows = list(fields.muscle_rows(found.muscle))
+    rows = list(muscle_rows(found.muscle))
     marks, sources = fields.numbered(row[3] for row in rows)
     marked = [(*_short(*row[:3]), mark) for row, mark in zip(rows, marks, strict=True)]
     say(table(columns, marked, title=f"Muscle{name}", whole=(0, 1, 3)))
@@ -55,7 +56,7 @@ def check(
         say(source)
     say()
     if found.test is not None:
-        say(table(columns[:3], list(fields.test_rows(found.test)), title="Test"))
+        say(table(columns[:3], list(test_rows(found.test)), title="Test"))
     if asked.over is not None or asked.designs is not None:
         say(table(("field", "values"), _swept(asked), title="Sweep"))
     say(table(("derived", *columns[1:3]), list(foresee.derived(found.muscle)), title="What follows"))
@@ -123,6 +124,7 @@ def presets(
             say(table(("preset", "what it is"), lines))
         return
     from mckibben.app import fields
+    from mckibben.spec.rows import muscle_rows
 
     muscle = known.get(name)
     if toml:
@@ -133,7 +135,7 @@ def presets(
 
         show_json({"name": name, "muscle": to_mapping(muscle), "sources": known.sources(name)})
         return
-    rows = [(field, _narrow(value), source) for field, value, _, source in fields.muscle_rows(muscle)]
+    rows = [(field, _narrow(value), source) for field, value, _, source in muscle_rows(muscle)]
     say(table(("field", "value", "source"), rows, title=f'Muscle "{name}"', whole=(0, 1)))
 
 
@@ -180,8 +182,8 @@ def _installation() -> list[tuple[str, str]]:
 def _content(file: Path) -> list[tuple[str, str]]:
     from collections import Counter
 
-    from mckibben.app import fields
     from mckibben.files import store
+    from mckibben.spec.rows import test_rows
     from mckibben.units import from_si
 
     found = store.load(file)
@@ -202,7 +204,7 @@ def _content(file: Path) -> list[tuple[str, str]]:
         ("assumed", about["assumed"] or "nothing"),
     ]
     rows += [("warning", warning) for warning in about["warnings"].splitlines() if warning]
-    rows += [(f"test {name}", value) for name, value, _ in fields.test_rows(result.test)]
+    rows += [(f"test {name}", value) for name, value, _ in test_rows(result.test)]
     for name, unit in (("length", "mm"), ("force", "N"), ("pressure", "bar"), ("volume", "mL")):
         values = from_si(result.column(name), unit)
         values = values[values == values]  # without NaN

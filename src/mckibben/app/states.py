@@ -7,32 +7,16 @@ from collections.abc import Iterator
 from typing import Any
 
 from mckibben.app.console import COMPLETE, INCOMPLETE, INTERRUPTED, say, table
-from mckibben.app.fields import muscle_rows
 from mckibben.experiments import foresee
-from mckibben.files.table import COLUMNS as COLUMNS_SI
-from mckibben.files.table import rows
 from mckibben.results.result import Result
-from mckibben.results.variables import EXTREMES
+from mckibben.results.rows import COLUMNS as COLUMNS_SI
+from mckibben.results.rows import rows
+from mckibben.results.told import cells, columns, verdict
 from mckibben.results.verdict import Verdict
-from mckibben.spec import Muscle
-from mckibben.units import from_si
+from mckibben.spec.rows import muscle_rows
 
 __all__ = ["as_json", "exit_code", "show"]
 
-COLUMNS = (
-    ("length", "length", "mm"),
-    ("contraction", "contr.", "%"),
-    ("force", "force", "N"),
-    ("pressure", "press.", "bar"),
-    ("volume", "volume", "mL"),
-    ("largest_diameter", "diam.", "mm"),
-    ("peak_fibre_tension", "tension", "N"),
-)
-"""Columns of the table: variable, its short name and the unit it is shown in."""
-SAFETY = ("safety_factor", "safety", "")
-"""The column of a muscle whose fibres have a breaking force."""
-AIR = ("air_volume", "air", "mL")
-"""The column of a muscle whose chamber lies inside the braid, after that of the volume."""
 MOST_ROWS = 40
 """Rows of the table; of more states the ones in the middle are left out."""
 GOOD = (Verdict.STABLE, Verdict.UNSTABLE)
@@ -50,17 +34,17 @@ def show(result: Result, tolerance: float) -> None:
     """Print the table of states, then the notes on them."""
     states = list(rows(result))
     several = states[-1]["protocol_step"] > 0
-    columns = _columns(result.muscle)
-    heads = (f"{name}\n[{unit}]" if unit else name for _, name, unit in columns)
+    shown = columns(result.muscle)
+    heads = (f"{name}\n[{unit}]" if unit else name for _, name, unit in shown)
     names = ["state", *(["step"] if several else []), *heads, "verdict"]
-    cells = [
-        [str(k), *([str(row["protocol_step"])] if several else []), *_numbers(row, columns), row["verdict"]]
+    body = [
+        [str(k), *([str(row["protocol_step"])] if several else []), *cells(row, shown), row["verdict"]]
         for k, row in enumerate(states)
     ]
     say(
         table(
             names,
-            cells,
+            body,
             title=result.attributes["title"],
             right=range(len(names) - 1),
             whole=(len(names) - 1,),
@@ -75,34 +59,13 @@ def show(result: Result, tolerance: float) -> None:
         say(note)
 
 
-def _columns(muscle: Muscle) -> tuple[tuple[str, str, str], ...]:
-    """The columns that say something of this muscle."""
-    inside = muscle.chamber is not None and muscle.chamber.inside
-    shown = (column for one in COLUMNS for column in ((one, AIR) if inside and one[0] == "volume" else (one,)))
-    return (*shown, *(() if muscle.braid.fibre.breaking_force is None else (SAFETY,)))
-
-
-def _numbers(row: dict[str, Any], columns: tuple[tuple[str, str, str], ...]) -> Iterator[str]:
-    for name, _, unit in columns:
-        value = row[name]
-        if value is None:
-            yield "-"
-        else:
-            shown = 100.0 * value if unit == "%" else from_si(value, unit or "1")
-            digits = 4 if name in EXTREMES else 5
-            yield (
-                f"{shown:.{digits}g}" if abs(shown) > 1e-9 else "0"
-            )  # a force held at 0 N comes out as a rounding error
-
-
 def _notes(result: Result, states: list[dict[str, Any]], tolerance: float) -> Iterator[str]:
     found: dict[tuple[str, str], list[int]] = {}
     for k, row in enumerate(states):
         if row["verdict"] != Verdict.STABLE:
             found.setdefault((row["verdict"], row["reason"]), []).append(k)
-    for (verdict, reason), which in found.items():
-        said = reason if reason.startswith(verdict) else f"{verdict}: {reason}"
-        yield f"{_states(which)}: {said}"
+    for (word, reason), which in found.items():
+        yield f"{_states(which)}: {verdict(word, reason)}"
     for warning in filter(None, result.attributes["warnings"].splitlines()):
         yield f"warning: {warning}"
     worst = max((row["error_estimate"] or 0.0 for row in states), default=0.0)

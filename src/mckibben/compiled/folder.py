@@ -15,8 +15,8 @@ from pathlib import Path
 __all__ = ["LIMIT", "SUFFIX", "content", "folder", "off", "private", "processor", "ready", "size"]
 
 SUFFIX = ".kernel"
-LIMIT = 256 * 2**20
-"""Bytes above which the oldest files are deleted, until half is left."""
+LIMIT = 2**30
+"""Bytes above which the oldest files are deleted, until half is left: some 500 functions of one to a few MB."""
 _READING = os.O_RDONLY
 for _flag in ("O_NOFOLLOW", "O_NONBLOCK", "O_BINARY"):  # as far as the system has them; a pipe must not be waited for
     _READING |= getattr(os, _flag, 0)

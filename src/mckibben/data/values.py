@@ -9,6 +9,7 @@ import numpy as np
 
 from mckibben.data import thin
 from mckibben.data.branches import LOADING, UNKNOWN, UNLOADING
+from mckibben.shown import Shown
 from mckibben.spec import Muscle
 from mckibben.spec.errors import SpecError, nearest
 from mckibben.units import UnitError, from_si, to_si
@@ -30,7 +31,7 @@ def _optional(values: Any) -> np.ndarray | None:
 
 
 @attrs.frozen(eq=False, repr=False)
-class Data:
+class Data(Shown):
     """Measured points of one or several tests, in SI: what `read_data` gives. It never changes.
 
     All arrays have one entry per point and are read-only.

@@ -9,20 +9,16 @@ from os import PathLike, fspath
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-import numpy as np
-
 from mckibben import disk
 from mckibben.results.result import Result
+from mckibben.results.rows import COLUMNS, headed, rows
 from mckibben.results.sensitivity import Sensitivity
-from mckibben.results.variables import EXTREMES, STEP, has
+from mckibben.results.variables import has
 
-__all__ = ["COLUMNS", "map_csv", "map_rows", "notes_file", "rows", "save_csv", "save_sensitivity", "write"]
+__all__ = ["map_csv", "map_rows", "notes_file", "save_csv", "save_sensitivity", "write"]
 
 if TYPE_CHECKING:
     from xarray import Dataset
-
-COLUMNS = STEP | EXTREMES
-"""Variables of a table: unit and meaning."""
 
 
 def notes_file(path: str | PathLike[str]) -> Path:
@@ -35,7 +31,7 @@ def save_csv(result: Result, path: str | PathLike[str], force: bool = False) -> 
     text = io.StringIO(newline="")
     writer = csv.writer(text, lineterminator="\n")
     names = [name for name in COLUMNS if has(result.muscle, name)]
-    writer.writerow(["state", *(_header(name, COLUMNS[name][0]) for name in names)])
+    writer.writerow(["state", *(headed(name, COLUMNS[name][0]) for name in names)])
     for state, row in enumerate(rows(result)):
         writer.writerow([state, *(_cell(row[name]) for name in names)])
     return write(path, _comments(result), text.getvalue(), force)
@@ -69,20 +65,12 @@ def save_sensitivity(found: Sensitivity, path: str | PathLike[str], force: bool 
     return write(path, lines, text.getvalue(), force)
 
 
-def rows(result: Result) -> Iterator[dict[str, Any]]:
-    """The variables of each state, and the extremes of its fields, as plain Python values in SI, None for NaN."""
-    columns = {name: result.column(name).tolist() for name in STEP if has(result.muscle, name)} | _extremes(result)
-    for state in range(len(result)):
-        values = {name: column[state] for name, column in columns.items()}
-        yield {name: None if value != value else value for name, value in values.items()}
-
-
 def map_rows(data: Dataset, units: bool = True) -> list[dict[str, Any]]:
     """The points of a force map or a working range as plain values in SI, None for NaN; with `units` in their names."""
     frame = data.to_dataframe().reset_index()
     if units:
         known = {str(name): str(item.attrs.get("units", "")) for name, item in data.variables.items()}
-        frame = frame.rename(columns={name: _header(name, known.get(name, "")) for name in frame.columns})
+        frame = frame.rename(columns={name: headed(name, known.get(name, "")) for name in frame.columns})
     records: list[dict[str, Any]] = frame.to_dict("records")
     return [{name: None if value != value else value for name, value in row.items()} for row in records]
 
@@ -94,18 +82,6 @@ def map_csv(data: Dataset) -> str:
     writer.writerow(records[0])
     writer.writerows([_cell(value) for value in row.values()] for row in records)
     return text.getvalue()
-
-
-def _extremes(result: Result) -> dict[str, list[float]]:
-    """`EXTREMES` of every state, NaN where there are none."""
-    tension, strength = result.column("fibre_tension").max(axis=1), result.muscle.braid.fibre.breaking_force
-    pulled = np.where(tension > 0.0, tension, np.nan)
-    found = (2.0 * result.column("r").max(axis=1), tension, (np.nan if strength is None else strength) / pulled)
-    return {name: values.tolist() for name, values in zip(EXTREMES, found, strict=True)}
-
-
-def _header(name: str, unit: str) -> str:
-    return f"{name} [{unit}]" if unit not in ("", "1") else name
 
 
 def _cell(value: Any) -> str:

@@ -10,6 +10,7 @@ from typing import Any
 import jax.numpy as jnp
 
 from mckibben.model.parameters import Number
+from mckibben.spec.errors import SpecError
 from mckibben.spec.laws import ArrudaBoyce, CustomLaw, Gent, MooneyRivlin, NeoHookean, Ogden, Yeoh
 
 __all__ = ["LAWS", "energy_density"]
@@ -60,8 +61,13 @@ def arruda_boyce(l1: Number, l2: Number, l3: Number, law: ArrudaBoyce) -> Number
 
 
 def custom(l1: Number, l2: Number, l3: Number, law: CustomLaw) -> Number:
-    """The user's own function of the stretches and its named constants."""
-    return law.function(l1, l2, l3, dict(law.constants))
+    """The user's own function of the stretches and its named constants; SpecError where it fails."""
+    try:
+        return law.function(l1, l2, l3, dict(law.constants))
+    except Exception as error:
+        said = f"fails with {type(error).__name__}: {str(error).partition(chr(10))[0]}"
+        advice = "write it with jax.numpy, and without `if` on the stretches"
+        raise SpecError("chamber.law.function", allowed=said, advice=advice) from error
 
 
 LAWS: dict[type, Callable[[Number, Number, Number, Any], Number]] = {

@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING, Any
 
 import attrs
 
+from mckibben.shown import Shown
 from mckibben.spec import Muscle
 
 if TYPE_CHECKING:
@@ -23,7 +24,7 @@ QUANTITIES: dict[str, tuple[str, str]] = {
 
 
 @attrs.frozen(eq=False)
-class Effects:
+class Effects(Shown):
     """The size of each effect for one muscle at one length and pressure.
 
     It is what `effects` gives. `data` holds, over `effect`, each of force, volume, middle_radius and

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any
 import attrs
 import numpy as np
 
+from mckibben.shown import Shown
 from mckibben.spec import Muscle
 from mckibben.units import from_si, show
 
@@ -30,7 +31,7 @@ POINTS = {
 
 
 @attrs.frozen(eq=False, repr=False)
-class Fitted:
+class Fitted(Shown):
     """A muscle fitted to measured forces, as `fit` gives it; `muscle` is a muscle like any other.
 
     Args:

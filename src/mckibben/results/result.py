@@ -11,8 +11,11 @@ from typing import TYPE_CHECKING, Any
 import attrs
 import numpy as np
 
-from mckibben.results.variables import COORDINATES, OPTIONAL, STEP, VARIABLES, about_variable, dimensions
+from mckibben.results.rows import COLUMNS, headed, rows
+from mckibben.results.told import summary
+from mckibben.results.variables import COORDINATES, OPTIONAL, STEP, VARIABLES, about_variable, dimensions, has
 from mckibben.results.verdict import Modes, Verdict
+from mckibben.shown import Shown
 from mckibben.spec import Muscle, Test
 from mckibben.spec.text import to_toml
 
@@ -53,7 +56,7 @@ def dataset(steps: dict[str, Any], fields: dict[str, np.ndarray], v: np.ndarray,
 
 
 @attrs.frozen(eq=False)
-class Result:
+class Result(Shown):
     """The states of one test: what was tested, and a Dataset of what was found.
 
     It is what `run` and `load` give, and never changes. Two results are equal if muscle, test and every number are.
@@ -151,13 +154,28 @@ class Result:
         """complete, incomplete (some states have no admissible equilibrium or were not reached) or interrupted."""
         return str(self.attributes["status"])
 
+    def to_pandas(self) -> Any:
+        """DataFrame in SI units with a row per state; each head is a variable of `data` and its unit: "force [N]".
+
+        >>> curve = mk.run(mk.presets.paper(), mk.Isometric(length="115 mm", pressure="0 to 1 bar", points=3))
+        >>> [round(force, 1) for force in curve.to_pandas()["force [N]"]]
+        [11.5, 58.2, 101.2]
+        """
+        import pandas as pd
+
+        frame = pd.DataFrame.from_records(list(rows(self)), index=pd.RangeIndex(len(self), name="state"))
+        shown = [name for name in COLUMNS if has(self.muscle, name)]
+        for name in shown:
+            frame[name] = pd.to_numeric(frame[name]) if COLUMNS[name][0] else frame[name]  # None is NaN
+        return frame[shown].rename(columns={name: headed(name, COLUMNS[name][0]) for name in shown})
+
     def __repr__(self) -> str:
         words = sorted(set(self.verdict))
         return f"<Result: {self.test.kind}, {len(self)} states, {self.reached} reached, {', '.join(words)}>"
 
 
 @attrs.frozen(eq=False)
-class State:
+class State(Shown):
     """One state, sought directly: its numbers, verdict and, where it is no good, what there is instead.
 
     It is what `solve` gives, and never changes. `force` [N, positive in tension], `length` [m], `contraction`,
@@ -234,6 +252,16 @@ class State:
     def error_estimate(self) -> float:
         """Estimated relative error of force and length."""
         return self._number("error_estimate")
+
+    def summary(self) -> str:
+        """The state in a few lines: its verdict, and each number with its meaning, in mm, N and bar.
+
+        >>> state = mk.solve(mk.presets.paper(), length="115 mm", pressure="1 bar")
+        >>> print(state.summary().splitlines()[3])
+        axial force, positive in tension             101.22 N
+        """
+        (row,) = rows(self.result)
+        return summary(row, self.muscle)
 
     def __repr__(self) -> str:
         if self.length != self.length:  # nothing was found: say what was asked for, and why

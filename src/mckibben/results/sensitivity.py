@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any
 import attrs
 import numpy as np
 
+from mckibben.shown import Shown
 from mckibben.spec import Muscle, Test
 
 if TYPE_CHECKING:
@@ -47,7 +48,7 @@ def sensitivities(
 
 
 @attrs.frozen(eq=False)
-class Sensitivity:
+class Sensitivity(Shown):
     """Derivatives of results of one state by the numbers of the muscle and of the test.
 
     It is what `sensitivity` gives. `relative` is d ln(result)/d ln(number): per cent of the result for one per cent of

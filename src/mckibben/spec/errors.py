@@ -55,6 +55,10 @@ class SpecError(ValueError):
         """The same error under another field name, as where a file calls `isometric.length` `test.length`."""
         return SpecError(field, self.value, self.allowed, self.advice)
 
+    def _render_traceback_(self) -> list[str]:
+        """What a notebook shows: where the package noticed does not help."""
+        return [f"{type(self).__name__}: {self}"]
+
     def __reduce__(self) -> tuple[type[SpecError], tuple[object, ...]]:
         return SpecError, (self.field, self.value, self.allowed, self.advice)
 

@@ -14,6 +14,7 @@ from typing import Any, TypeVar, dataclass_transform
 
 import attrs
 
+from mckibben.shown import Shown
 from mckibben.spec.declared import Declared, as_call, declare
 from mckibben.spec.errors import SpecError, near
 from mckibben.spec.plausible import Doubt, reading
@@ -221,6 +222,7 @@ def spec(path: str) -> Callable[[type[T]], type[T]]:
         cls.__spec_path__ = path  # type: ignore[attr-defined]
         made = attrs.define(frozen=True, repr=False)(cls)
         made.__repr__ = as_call  # type: ignore[method-assign]
+        made._repr_html_ = Shown._repr_html_  # type: ignore[attr-defined]
         _CLASSES.append(made)
         return made
 

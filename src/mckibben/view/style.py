@@ -28,6 +28,9 @@ COLUMN = 3.5
 PAGE = 7.16
 """Width [inch] of a page of a two-column paper."""
 
+INCH = 96
+"""Pixels of an inch of a picture in a notebook."""
+
 BLACK = "#000000"
 ORANGE = "#E69F00"
 SKY = "#56B4E9"
@@ -60,9 +63,16 @@ _WRITING = Lock()
 """matplotlib's settings are global: only one thread at a time may change them to write a file."""
 
 
+class Picture(Figure):
+    """A figure that a notebook shows by itself, once."""
+
+    def _repr_png_(self) -> tuple[bytes, dict[str, int]]:
+        return picture(self, "png"), {"width": round(INCH * self.get_figwidth())}
+
+
 def new_figure(width: float = COLUMN, height: float = 2.6) -> Figure:
     """An empty figure of a given size [inch]. pyplot does not know it, so that it need not be closed."""
-    figure = Figure(figsize=(width, height), layout="constrained")
+    figure = Picture(figsize=(width, height), layout="constrained")
     FigureCanvasAgg(figure)
     return figure
 
