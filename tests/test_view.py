@@ -17,6 +17,8 @@ from mckibben.paper.measured import measured_points, read_measured
 from mckibben.results.result import Result
 from mckibben.spec import SpecError
 from mckibben.view import curves, shape3d, style
+from mckibben.view.projection import View
+from mckibben.view.tube import FACETS, Tube
 
 pytestmark = pytest.mark.view
 
@@ -211,19 +213,19 @@ def test_every_figure_of_the_paper_is_written_whole(results: dict[str, Result], 
 
 
 def test_only_what_faces_the_viewer_is_drawn(results: dict[str, Result]) -> None:
-    tube, view = shape3d.Tube.of(results["a"], -1), shape3d.View("horizontal", 0.0)
+    tube, view = Tube.of(results["a"], -1), View("horizontal", 0.0)
     axes = style.new_figure().add_subplot()
     shape3d.draw_muscle(axes, tube, view, values=results["a"].data["density_chamber"].values[-1], fittings=False)
     (faces,) = (found for found in axes.collections if isinstance(found, PolyCollection))
     (fibres,) = (found for found in axes.collections if isinstance(found, LineCollection))
-    assert len(faces.get_paths()) == 2 * shape3d.FACETS * shape3d.FACETS  # half of those around
+    assert len(faces.get_paths()) == 2 * FACETS * shape3d.FACETS  # half of those around
     x = np.concatenate([path.vertices for path in fibres.get_paths()])
     np.testing.assert_allclose([x[:, 0].min(), x[:, 0].max()], [0.0, 115.0], atol=1e-6)
     assert np.abs(x[:, 1]).max() <= 12.5 + 1e-9
 
 
 def test_fibres_on_the_drawn_surface_keep_their_length(results: dict[str, Result]) -> None:
-    tube = shape3d.Tube.of(results["b"], -1)
+    tube = Tube.of(results["b"], -1)
     v, phi = tube.fibre(0.3, -1, count=4001)
     points = tube.point(v, phi)
     length = np.linalg.norm(np.diff(points, axis=0), axis=1).sum()
@@ -231,11 +233,11 @@ def test_fibres_on_the_drawn_surface_keep_their_length(results: dict[str, Result
 
 
 def test_normals_and_projection_are_orthonormal() -> None:
-    tube = shape3d.Tube.cylinder(mk.presets.paper())
+    tube = Tube.cylinder(mk.presets.paper())
     phi = np.linspace(0.0, 6.0, 7)
     np.testing.assert_allclose(np.linalg.norm(tube.normal(0.03, phi), axis=-1), 1.0)
     for axis in ("horizontal", "vertical"):
-        screen, depth = shape3d.View(axis, 25.0, 40.0).project(np.eye(3))
+        screen, depth = View(axis, 25.0, 40.0).project(np.eye(3))
         frame: Any = np.column_stack([screen, depth])
         np.testing.assert_allclose(frame @ frame.T, np.eye(3), atol=1e-14)
         assert np.linalg.det(frame) > 0.0

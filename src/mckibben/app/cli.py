@@ -18,6 +18,7 @@ from mckibben.app import reach as commands_reach
 from mckibben.app import run as commands_run
 from mckibben.app import sensitivity as commands_derive
 from mckibben.app import sweep as commands_sweep
+from mckibben.app import view as commands_view
 from mckibben.app.console import examples
 
 __all__ = ["app", "main"]
@@ -49,6 +50,7 @@ app.command(epilog=commands_look.CHECK)(commands_look.check)
 app.command(epilog=commands_look.PRESETS)(commands_look.presets)
 app.add_typer(commands_data.data, name="data")
 app.command(epilog=commands_draw.PLOT)(commands_draw.plot)
+app.command(epilog=commands_view.EPILOG)(commands_view.view)
 app.command(epilog=commands_draw.REPRODUCE)(commands_draw.reproduce)
 app.command(epilog=commands_look.INFO)(commands_look.info)
 

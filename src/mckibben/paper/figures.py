@@ -26,7 +26,9 @@ from mckibben.spec import Muscle
 from mckibben.view import style
 from mckibben.view.curves import column, label, mark
 from mckibben.view.measured import draw
-from mckibben.view.shape3d import Tube, View, draw_muscle
+from mckibben.view.projection import View
+from mckibben.view.shape3d import draw_muscle
+from mckibben.view.tube import Tube
 
 __all__ = ["convergence", "fig1", "fig2", "fig3", "fig4", "fig5", "fig6", "formula_force", "textbook"]
 

@@ -14,7 +14,9 @@ from mckibben.model.cylinder import cylinder_volume
 from mckibben.model.parameters import parameters
 from mckibben.spec import Muscle
 from mckibben.view import style
-from mckibben.view.shape3d import MM, Tube, View, draw_fibres, draw_rings, draw_surface, frame
+from mckibben.view.projection import MM, View
+from mckibben.view.shape3d import draw_fibres, draw_rings, draw_surface, frame
+from mckibben.view.tube import Tube
 
 MAGIC = math.degrees(math.atan(math.sqrt(0.5)))
 """Angle of the largest volume [deg from the parallels]."""

@@ -9,7 +9,6 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import Any
 
-import attrs
 import numpy as np
 from matplotlib import colormaps
 from matplotlib.axes import Axes
@@ -18,93 +17,11 @@ from matplotlib.collections import Collection, LineCollection, PolyCollection
 from matplotlib.colors import Normalize, to_rgba
 from numpy.typing import NDArray
 
-from mckibben.results.result import Result
-from mckibben.spec import Muscle
+from mckibben.view.projection import MM, View
+from mckibben.view.tube import FACETS, Floats, Tube
 
-Floats = NDArray[np.float64]
-MM = 1e3
-"""mm per m."""
 FITTING = "0.72"
 """Grey of the end fittings."""
-FACETS = 40
-"""Facets along the length and around the visible half."""
-
-
-@attrs.frozen
-class View:
-    """A parallel projection: the axis lies "horizontal" or "vertical", tilted so that its far end leaves the viewer.
-
-    With tilt > 0 the viewer looks onto the end z = h; `turn` turns the muscle about its axis. Angles in degrees.
-    """
-
-    axis: str = "horizontal"
-    tilt: float = 18.0
-    turn: float = 0.0
-    at: tuple[float, float] = (0.0, 0.0)  #: where the origin stands on the screen [mm]
-
-    def project(self, points: Any) -> tuple[Floats, Floats]:
-        """Screen directions (..., 2) and depths (...) towards the viewer of vectors (..., 3)."""
-        points, t, a = np.asarray(points, float), np.deg2rad(self.tilt), np.deg2rad(self.turn)
-        x = np.cos(a) * points[..., 0] - np.sin(a) * points[..., 1]
-        y = np.sin(a) * points[..., 0] + np.cos(a) * points[..., 1]
-        z = points[..., 2]
-        along, depth = np.cos(t) * z - np.sin(t) * x, np.cos(t) * x + np.sin(t) * z
-        screen = (along, -y) if self.axis == "horizontal" else (y, along)
-        return np.stack(screen, axis=-1), np.asarray(depth)
-
-    def place(self, points: Any) -> Floats:
-        """Positions on the screen [mm] of points (..., 3) [m]."""
-        return self.project(MM * np.asarray(points))[0] + np.array(self.at)
-
-
-@attrs.frozen
-class Tube:
-    """A surface of revolution with its fibres: v, r, z [m] along the meridian, and the braid as made."""
-
-    v: Floats
-    r: Floats
-    z: Floats
-    R0: float
-    theta0: float
-    fibres: int
-
-    @classmethod
-    def of(cls, result: Result, step: int) -> Tube:
-        """The shape of one state of a result."""
-        data, braid = result.data.isel(step=step), result.muscle.braid
-        r, z = np.asarray(data["r"]), np.asarray(data["z"])
-        return cls(np.asarray(data["v"]), r, z, float(braid.radius), float(braid.angle), int(braid.fibres))
-
-    @classmethod
-    def cylinder(cls, muscle: Muscle, theta: float | None = None) -> Tube:
-        """The uniform cylinder at braid angle theta [rad]: the muscle as made where none is given."""
-        braid = muscle.braid
-        R0, H0, theta0 = float(braid.radius), float(braid.length), float(braid.angle)
-        theta = theta0 if theta is None else theta
-        v = np.linspace(0.0, H0, 61)
-        r = np.full(61, R0 * np.cos(theta) / np.cos(theta0))
-        return cls(v, r, v * np.sin(theta) / np.sin(theta0), R0, theta0, int(braid.fibres))
-
-    def at(self, v: Any) -> tuple[Floats, Floats]:
-        """r and z at material coordinates v."""
-        return np.asarray(np.interp(v, self.v, self.r)), np.asarray(np.interp(v, self.v, self.z))
-
-    def point(self, v: Any, phi: Any) -> Floats:
-        """Points (..., 3) of the surface (Eq. 1)."""
-        r, z = self.at(v)
-        return np.stack(np.broadcast_arrays(r * np.cos(phi), r * np.sin(phi), z), axis=-1)
-
-    def normal(self, v: Any, phi: Any) -> Floats:
-        """Outward unit normals (..., 3) (Eq. 4)."""
-        rate = np.interp(v, self.v, np.gradient(self.r, self.v)), np.interp(v, self.v, np.gradient(self.z, self.v))
-        size = np.hypot(*rate)
-        parts = rate[1] * np.cos(phi) / size, rate[1] * np.sin(phi) / size, -rate[0] / size
-        return np.stack(np.broadcast_arrays(*parts), axis=-1)
-
-    def fibre(self, start: float, hand: int, count: int = 161) -> tuple[Floats, Floats]:
-        """(v, phi) along one fibre: phi = start + hand v/(R0 tan(theta0)) (Eq. 7)."""
-        v = np.linspace(self.v[0], self.v[-1], count)
-        return v, start + hand * v / (self.R0 * np.tan(self.theta0))
 
 
 def draw_surface(
@@ -112,7 +29,7 @@ def draw_surface(
     colour: str = "0.93",
 ) -> ScalarMappable:  # fmt: skip
     """The surface where it faces the viewer, coloured by `values` along v, or plain; returns what a bar needs."""
-    v = _even(tube)
+    v = tube.even()
     phi = np.linspace(0.0, 2.0 * np.pi, 2 * FACETS + 1)
     screen = view.place(tube.point(v[:, None], phi[None, :]))
     vm, pm = 0.5 * (v[1:] + v[:-1])[:, None], 0.5 * (phi[1:] + phi[:-1])[None, :]
@@ -206,16 +123,6 @@ def _add(axes: Axes, collection: Collection) -> None:
     """Add a collection that the layout does not measure: it lies inside the axes, and has thousands of paths."""
     collection.set_in_layout(False)
     axes.add_collection(collection)
-
-
-def _even(tube: Tube) -> Floats:
-    """Material coordinates at nearly even steps along the meridian, somewhat closer together at the ends."""
-    if len(tube.v) <= 3:
-        return tube.v
-    arc = np.concatenate([[0.0], np.cumsum(np.hypot(np.diff(tube.r), np.diff(tube.z)))])
-    share = np.linspace(0.0, 1.0, 2 * FACETS + 1)
-    share = share - 0.6 * np.sin(2.0 * np.pi * share) / (2.0 * np.pi)
-    return np.interp(share * arc[-1], arc, tube.v)
 
 
 def _runs(points: Floats, seen: Sequence[bool] | NDArray[np.bool_]) -> list[Floats]:

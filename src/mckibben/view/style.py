@@ -138,6 +138,13 @@ def heading(figure: Figure, text: str) -> None:
 
 def assumption_note(figure: Figure, muscle: Muscle) -> None:
     """Add a note that names the values of the muscle that are assumed, if there are any."""
+    said = assumption(muscle)
+    if said:
+        note(figure, said)
+
+
+def assumption(muscle: Muscle) -> str:
+    """The sentence that names the values of the muscle that are assumed; empty where there are none."""
     groups = (
         ("fibre count", "braid.fibres"),
         ("fibre values", "braid.fibre."),
@@ -148,13 +155,13 @@ def assumption_note(figure: Figure, muscle: Muscle) -> None:
     known = [start for _, start in groups]
     words += [name for name in muscle.assumed if not any(_within(name, start) for start in known)]
     if not words:
-        return
+        return ""
     said = (", ".join(words[:-1]) + " and " if words[1:] else "") + words[-1]
     said = said.replace("fibre values, chamber values", "fibre and chamber values")
     said = said.replace("fibre values and chamber values", "fibre and chamber values")
     reason = ": the paper does not print them" if (muscle.name or "").startswith("paper") else ""
     verb = "is" if words == ["fibre count"] or words == ["end condition"] else "are"
-    note(figure, f"{said[0].upper()}{said[1:]} {verb} assumed{reason}.")
+    return f"{said[0].upper()}{said[1:]} {verb} assumed{reason}."
 
 
 def _within(name: str, start: str) -> bool:

@@ -1,0 +1,105 @@
+"""`mckibben view`: a saved result in three dimensions, as a window, a picture, an animation or a shape."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Annotated, Any
+
+import typer
+
+from mckibben.app.console import command, examples, say
+
+__all__ = ["EPILOG", "view"]
+
+EPILOG = examples(
+    "mckibben view out.nc",
+    "mckibben view out.nc -o picture.png --cut --ghost",
+    "mckibben view out.nc -o picture.png --state 0 --colour density_fibres --size 1600x900",
+    "mckibben view out.nc -o filling.gif",
+    "mckibben view out.nc -o outside.stl",
+)
+
+
+@command
+def view(
+    file: Annotated[Path, typer.Argument(metavar="FILE.nc", help="a result saved by mckibben run -o FILE.nc")],
+    output: Annotated[
+        Path | None,
+        typer.Option(
+            "--output",
+            "-o",
+            metavar="FILE",
+            help=".png: a picture; .gif or .mp4: all states one after the other; .vtp (ParaView, in m), .glb (the web, "
+            "in m) or .stl (CAD, the outer shape in mm): the shape; a window where left out",
+        ),
+    ] = None,
+    state: Annotated[
+        int | None, typer.Option(help=r"number of the state, from 0; from the end -1, -2 \[default: the last reached]")
+    ] = None,
+    colour: Annotated[
+        str, typer.Option(metavar="NAME", help="variable along the muscle that colours it, such as theta; or none")
+    ] = "fibre_tension",
+    cut: Annotated[bool, typer.Option("--cut", help="cut braid and chamber open")] = False,
+    translucent: Annotated[bool, typer.Option("--translucent", help="a chamber that one can see through")] = False,
+    ghost: Annotated[bool, typer.Option("--ghost", help="show the muscle as made, faintly")] = False,
+    axis: Annotated[str, typer.Option(help="the muscle lies (horizontal) or stands (vertical)")] = "horizontal",
+    tilt: Annotated[float, typer.Option(help="angle by which the far end leaves the viewer, in degrees")] = 18.0,
+    turn: Annotated[float, typer.Option(help="angle by which the muscle is turned about its axis, in degrees")] = 0.0,
+    size: Annotated[
+        str | None, typer.Option(metavar="WIDTHxHEIGHT", help=r"pixels \[default: 1200x600; standing 700x1000]")
+    ] = None,
+    fps: Annotated[float, typer.Option(help="frames a second of an animation")] = 5.0,
+    force: Annotated[bool, typer.Option("--force", help="replace the file if it exists")] = False,
+) -> None:
+    """Show a saved result in three dimensions, without solving anything again.
+
+    It takes PyVista, pip install "mckibben\\[view]"; .glb and .stl do not. Without a display, pictures and animations
+    also take EGL or OSMesa (Debian: libegl1 and libgl1-mesa-dri, or libosmesa6), and an .mp4 takes imageio-ffmpeg.
+    """
+    from mckibben import disk
+    from mckibben.files import store
+    from mckibben.view import animate, look, render, scene, shapefile
+
+    kinds = {".png": "a picture"} | animate.ENDINGS | shapefile.ENDINGS
+    ending = None if output is None else store.suffix_of(output, kinds)
+    if output is not None:
+        disk.check_target(output, force)
+    result = store.load_result(file)
+    drawing: dict[str, Any] = {
+        "colour": colour, "cut": cut, "translucent": translucent, "ghost": ghost, "axis": axis, "tilt": tilt,
+        "turn": turn, "size": _pixels(size),
+    }  # fmt: skip
+    if output is None or ending is None:
+        if not render.has_display():
+            raise _error("--output", "is missing: there is no display for a window", "such as -o picture.png")
+        scene.scene(result, state, off_screen=False, **drawing).show(title=str(file))
+    elif ending in shapefile.ENDINGS:
+        shapefile.save_shape(result, output, state, colour=colour, force=force)
+        say(f"written: {output}, in {shapefile.UNITS[ending]}")
+    elif ending in animate.ENDINGS:
+        if state is not None:
+            raise _error("--state", f"has no meaning for {output}", "an animation shows all states")
+        animate.animate(result, output, fps=fps, force=force, **drawing)
+        say(f"drawn: {output}")
+        if look.left_out(result):
+            say(look.left_out(result))
+    else:
+        disk.write(output, scene.png(scene.scene(result, state, off_screen=True, **drawing)), force)
+        say(f"drawn: {output}")
+
+
+def _pixels(size: str | None) -> tuple[int, int] | None:
+    if size is None:
+        return None
+    width, _, height = size.lower().replace("×", "x").partition("x")
+    if not (width.strip().isdecimal() and height.strip().isdecimal()):
+        from mckibben.spec.errors import SpecError
+
+        raise SpecError("--size", size, "must be WIDTHxHEIGHT in pixels", "such as 1200x600")
+    return int(width), int(height)
+
+
+def _error(option: str, said: str, advice: str) -> Exception:
+    from mckibben.spec.errors import SpecError
+
+    return SpecError(option, allowed=said, advice=advice)
