@@ -1,4 +1,4 @@
-"""The pictures of the README and of the gallery: `make pictures`.
+"""The pictures of the README, of the gallery and of the recipes: `make pictures`.
 
 They are those of `mckibben reproduce`, made small: at most 1000 pixels wide, line drawings with 256 colours.
 A folder made by that command may be given instead of making the pictures anew.
@@ -11,12 +11,13 @@ from pathlib import Path
 
 from PIL import Image
 
+import mckibben as mk
 from mckibben.paper.reproduce import PICTURES, reproduce
 
 HERE = Path(__file__).parent / "pictures"
 WIDEST = 1000
 """Pixels."""
-SHADED = ("fig5_energy_density", "fig6_stiff_fibres")
+SHADED = ("fig5_energy_density", "fig6_stiff_fibres", "scene")
 """Pictures with colour scales, which a palette would falsify."""
 
 
@@ -36,6 +37,20 @@ def working_range() -> None:
     shrink(made, HERE / made.name)
 
 
+def scene() -> None:
+    """The muscle in three dimensions, where PyVista is there and can draw."""
+    state = mk.solve(mk.presets.paper(), length="115 mm", pressure="1 bar")
+    try:
+        plotter = mk.scene(state, cut=True, ghost=True, off_screen=True)
+    except mk.SpecError as error:
+        print(f"docs/pictures/scene.png stays: {error}")
+        return
+    with tempfile.TemporaryDirectory() as folder:
+        made = Path(folder) / "scene.png"
+        plotter.screenshot(made)
+        shrink(made, HERE / made.name)
+
+
 def main(folder: Path) -> None:
     """Every picture of the paper's figures from a folder into docs/pictures."""
     HERE.mkdir(exist_ok=True)
@@ -47,6 +62,7 @@ def main(folder: Path) -> None:
 
 if __name__ == "__main__":
     working_range()
+    scene()
     if len(sys.argv) > 1:
         main(Path(sys.argv[1]))
     else:

@@ -45,6 +45,7 @@ def view(
     axis: Annotated[str, typer.Option(help="the muscle lies (horizontal) or stands (vertical)")] = "horizontal",
     tilt: Annotated[float, typer.Option(help="angle by which the far end leaves the viewer, in degrees")] = 18.0,
     turn: Annotated[float, typer.Option(help="angle by which the muscle is turned about its axis, in degrees")] = 0.0,
+    zoom: Annotated[float, typer.Option(help="how many times larger than fits the window, around the middle")] = 1.0,
     size: Annotated[
         str | None, typer.Option(metavar="WIDTHxHEIGHT", help=r"pixels \[default: 1200x600; standing 700x1000]")
     ] = None,
@@ -67,7 +68,7 @@ def view(
     result = store.load_result(file)
     drawing: dict[str, Any] = {
         "colour": colour, "cut": cut, "translucent": translucent, "ghost": ghost, "axis": axis, "tilt": tilt,
-        "turn": turn, "size": _pixels(size),
+        "turn": turn, "zoom": zoom, "size": _pixels(size),
     }  # fmt: skip
     if output is None or ending is None:
         if not render.has_display():
@@ -84,7 +85,9 @@ def view(
         if look.left_out(result):
             say(look.left_out(result))
     else:
-        disk.write(output, scene.png(scene.scene(result, state, off_screen=True, **drawing)), force)
+        plotter = scene.scene(result, state, off_screen=True, **drawing)
+        disk.write(output, scene.png(plotter), force)
+        plotter.close()
         say(f"drawn: {output}")
 
 

@@ -22,12 +22,14 @@ __all__ = ["ENDINGS", "animate"]
 ENDINGS = {".gif": "shown by everything", ".mp4": "smaller; needs imageio-ffmpeg"}
 SAMPLES = 5
 """Frames from which the colours of a GIF are chosen."""
+NEARLY_WHITE = 240
 
 
 def animate(
     result: Any, path: str | PathLike[str], *, fps: float = 5.0, force: bool = False,
     colour: str | None = "fibre_tension", cut: bool = False, translucent: bool = False, ghost: bool = False,
-    axis: str = "horizontal", tilt: float = 18.0, turn: float = 0.0, size: Any = None,
+    axis: str = "horizontal", tilt: float = 18.0, turn: float = 0.0, zoom: float = 1.0,
+    size: Any = None,
 ) -> Path:  # fmt: skip
     """The states of a result in three dimensions, one after the other, as a file.
 
@@ -47,6 +49,7 @@ def animate(
         axis: "horizontal" or "vertical".
         tilt: angle [deg] by which the far end leaves the viewer.
         turn: angle [deg] by which the muscle is turned about its axis.
+        zoom: how many times larger than fits the frame, around the middle.
         size: width and height of the frames in pixels; as of `scene` where left out.
 
     Returns:
@@ -71,7 +74,7 @@ def animate(
     if isinstance(fps, bool) or not isinstance(fps, Real) or not 0.1 <= fps <= 50.0:
         raise SpecError("animate.fps", fps, "must be from 0.1 to 50 frames a second")
     shape = the_result("animate", result)
-    look = Look.of("animate", shape, colour, cut, translucent, ghost, axis, tilt, turn, size)
+    look = Look.of("animate", shape, colour, cut, translucent, ghost, axis, tilt, turn, zoom, size)
     states = reached("animate", shape)
     disk.check_target(path, force)
     ffmpeg = _ffmpeg(str(path)) if ending == ".mp4" else None
@@ -92,8 +95,7 @@ def _gif(stage: Stage, states: list[int], fps: float) -> bytes:
     """A GIF, in whose frames a colour is always the same one of the 256 that it has."""
     chosen = sorted({states[round(k)] for k in np.linspace(0, len(states) - 1, min(SAMPLES, len(states)))})
     samples = {state: _frame(stage, state) for state in chosen}
-    both = Image.fromarray(np.concatenate([np.asarray(sample) for sample in samples.values()]))
-    palette = both.quantize(256, dither=Image.Dither.NONE)
+    palette = _palette(list(samples.values()), stage.map)
     frames = [
         (samples.get(state) or _frame(stage, state)).quantize(palette=palette, dither=Image.Dither.NONE)
         for state in states
@@ -103,6 +105,20 @@ def _gif(stage: Stage, states: list[int], fps: float) -> bytes:
         content, "GIF", save_all=True, append_images=frames[1:], duration=round(1e3 / fps), loop=0, optimize=False
     )
     return content.getvalue()
+
+
+def _palette(samples: list[Image.Image], scale: Any) -> Image.Image:
+    """White, the scale of colours, and what else these pictures need: 256 colours in all.
+
+    None is nearly white, because Pillow would take the background for it.
+    """
+    pixels = np.concatenate([np.asarray(sample).reshape(-1, 3) for sample in samples])
+    others = Image.fromarray(pixels[pixels.min(axis=1) < NEARLY_WHITE][None])
+    fixed = np.concatenate([[[255, 255, 255]], np.round(255.0 * scale(np.linspace(0.0, 1.0, 63))[:, :3])])
+    rest = np.array(others.quantize(192, dither=Image.Dither.NONE).getpalette())[: 3 * 192]
+    made = Image.new("P", (1, 1))
+    made.putpalette([int(part) for part in np.concatenate([fixed.ravel(), rest])])
+    return made
 
 
 def _mp4(ffmpeg: Any, stage: Stage, states: list[int], fps: float) -> bytes:

@@ -41,12 +41,13 @@ class Look:
     translucent: bool
     ghost: bool
     view: View
+    zoom: float
     size: tuple[int, int]  #: of the window in pixels
 
     @classmethod
     def of(
         cls, call: str, result: Result, colour: Any, cut: Any, translucent: Any, ghost: Any, axis: Any, tilt: Any,
-        turn: Any, size: Any,
+        turn: Any, zoom: Any, size: Any,
     ) -> Look:  # fmt: skip
         """What was asked for; SpecError for what is no such thing."""
         known = [name for name in FIELDS if has(result.muscle, name)]
@@ -59,8 +60,11 @@ class Look:
         for name, value in {"tilt": tilt, "turn": turn}.items():
             if isinstance(value, bool) or not isinstance(value, Real) or not abs(float(value)) <= 360.0:
                 raise SpecError(f"{call}.{name}", value, "must be a number from -360 to 360, in degrees")
+        if isinstance(zoom, bool) or not isinstance(zoom, Real) or not 0.1 <= float(zoom) <= 100.0:
+            raise SpecError(f"{call}.zoom", zoom, "must be a number from 0.1 to 100")
         pixels = SIZES[axis] if size is None else _size(call, size)
-        return cls(colour, bool(cut), bool(translucent), bool(ghost), View(axis, float(tilt), float(turn)), pixels)
+        view = View(axis, float(tilt), float(turn))
+        return cls(colour, bool(cut), bool(translucent), bool(ghost), view, float(zoom), pixels)
 
     def braid(self, result: Result, state: int) -> Braid:
         """What is drawn of a state; a muscle that is cut open is cut where the viewer stands, and somewhat above."""

@@ -3,6 +3,9 @@
 from __future__ import annotations
 
 import io
+import textwrap
+from functools import lru_cache
+from importlib.util import find_spec
 from typing import Any
 
 import attrs
@@ -25,14 +28,14 @@ PAPER, INK = "#ffffff", "#262626"
 FIBRE, PLAIN_FIBRE, RUBBER, METAL, GHOST = "#3d4852", "#c89b3c", "#eceef0", "#b7bdc4", "#5a7fb0"
 """Colours of what no field colours; plain fibres where nothing is coloured at all."""
 MADE = "Faint: the muscle as made."
-TOP, BOTTOM = 3.0, 10.0
+TOP, BOTTOM = 3.0, 10.5
 """Heights of the head, and of the scale of colours with the notes, in letters."""
 
 
 def scene(
     result: Any, state: int | None = None, *, colour: str | None = "fibre_tension", cut: bool = False,
     translucent: bool = False, ghost: bool = False, axis: str = "horizontal", tilt: float = 18.0, turn: float = 0.0,
-    size: Any = None, off_screen: bool | None = None,
+    zoom: float = 1.0, size: Any = None, off_screen: bool | None = None,
 ) -> Any:  # fmt: skip
     """One state in three dimensions: fibres over and under each other, the chamber inside, the end fittings.
 
@@ -57,12 +60,13 @@ def scene(
         axis: the muscle lies "horizontal" or stands "vertical".
         tilt: angle [deg] by which the far end leaves the viewer.
         turn: angle [deg] by which the muscle is turned about its axis.
+        zoom: how many times larger than fits the window, around the middle; from 0.1 to 100.
         size: width and height of the window in pixels; (1200, 600), of a vertical muscle (700, 1000), where left out.
         off_screen: True to draw without a window; where left out, that is so where there is no display.
 
     Returns:
-        A PyVista Plotter, in mm: `.show()` opens a window, or shows the picture in a notebook; `.screenshot("x.png")`
-        writes a picture, where it is off screen.
+        A PyVista Plotter, in mm. `.show()` opens a window, and `.screenshot("x.png")` of one that is off screen writes
+        a picture. A notebook shows it by itself; with `pyvista[jupyter]` installed, `.show()` gives one to be turned.
 
     Raises:
         SpecError: for a state that was not reached, an unknown colour, PyVista missing, or a machine that cannot draw.
@@ -76,7 +80,7 @@ def scene(
     scene.colour = tension: is unknown; did you mean "fibre_tension"?
     """
     shape = the_result("scene", result)
-    look = Look.of("scene", shape, colour, cut, translucent, ghost, axis, tilt, turn, size)
+    look = Look.of("scene", shape, colour, cut, translucent, ghost, axis, tilt, turn, zoom, size)
     number = the_state("scene", shape, state)
     stage = Stage.of("scene", shape, look, [number], off_screen)
     stage.show(number)
@@ -90,13 +94,23 @@ def image(plotter: Any) -> Image.Image:
 
 
 def png(plotter: Any) -> bytes:
-    """What an off-screen plotter shows now, as the bytes of a PNG file; the plotter is closed."""
+    """What an off-screen plotter shows now, as the bytes of a PNG file."""
     content = io.BytesIO()
-    try:
-        image(plotter).save(content, "PNG")
-    finally:
-        plotter.close()
+    image(plotter).save(content, "PNG")
     return content.getvalue()
+
+
+@lru_cache(maxsize=1)
+def shown(pyvista: Any) -> Any:
+    """The kind of plotter that a notebook shows by itself."""
+
+    class Scene(pyvista.Plotter):  # type: ignore[misc]
+        """A PyVista Plotter."""
+
+        def _repr_png_(self) -> bytes | None:
+            return png(self) if self.off_screen else None
+
+    return Scene
 
 
 @attrs.frozen
@@ -116,7 +130,10 @@ class Stage:
         """A stage on which all of these states have room; still empty."""
         pyvista = ready(call)
         hidden = off_screen if has_display() else True
-        plotter = pyvista.Plotter(off_screen=hidden, window_size=list(look.size), border=False)
+        theme = pyvista.themes.DocumentTheme()
+        if find_spec("trame") is None:  # PyVista's interactive view in notebooks, which is no part of the extra
+            theme.jupyter_backend = "static"
+        plotter = shown(pyvista)(off_screen=hidden, window_size=list(look.size), border=False, theme=theme)
         plotter.set_background(PAPER)
         plotter.enable_anti_aliasing("msaa", multi_samples=4)
         stage = cls(plotter, result, look, look.limits(result, states), note)
@@ -148,7 +165,7 @@ class Stage:
         options: dict[str, Any] = {"color": colour}
         if values is not None:
             made.point_data[self.look.colour] = np.interp(mesh.v, braid.tube.v, values)
-            options = {"scalars": self.look.colour, "cmap": self._map, "clim": self.limits, "show_scalar_bar": False}
+            options = {"scalars": self.look.colour, "cmap": self.map, "clim": self.limits, "show_scalar_bar": False}
         shine = {"specular": 0.15, "specular_power": 20.0, "ambient": 0.3, "diffuse": 0.75}
         if opacity < 1.0:
             options["opacity"] = opacity
@@ -156,7 +173,8 @@ class Stage:
         self.plotter.actors[name].prop.interpolation = "Phong"
 
     @property
-    def _map(self) -> Any:
+    def map(self) -> Any:
+        """The map from numbers to colours."""
         return colormaps[style.DENSITY_CHAMBER if self.look.on_chamber(self.result) else style.DENSITY_MESH]
 
     def _ghost(self) -> None:
@@ -188,11 +206,11 @@ class Stage:
         top, bottom = TOP * letter, (BOTTOM if self.look.colour != PLAIN else TOP) * letter
         free = 1.0 - top - bottom
         across = 1.06 * max((high[1] - low[1]) / free, (high[0] - low[0]) * height / width)
-        centre = (low + high) / 2.0 - np.array([0.0, (bottom - top) / 2.0 * across])
+        centre = (low + high) / 2.0 - np.array([0.0, (bottom - top) / 2.0 * across / self.look.zoom])
         focus = centre[0] * right + centre[1] * up
         camera = self.plotter.camera
         camera.parallel_projection = True
-        camera.parallel_scale = across / 2.0
+        camera.parallel_scale = across / 2.0 / self.look.zoom
         camera.focal_point, camera.position, camera.up = focus, focus + 10.0 * across * towards, up
         camera.clipping_range = (across, 20.0 * across)
 
@@ -203,9 +221,10 @@ class Stage:
 
     def _write(self, top: str, bottom: list[str]) -> None:
         """The head and the notes."""
-        size, (_, height) = self._letters(), self.look.size
+        size, (width, height) = self._letters(), self.look.size
         self._text("head", top, (size, height - 2.0 * size), size)
-        self._text("notes", "\n".join([*bottom, *([self.note] if self.note else [])]), (size, 0.6 * size), 0.75 * size)
+        lines = textwrap.wrap(" ".join([*bottom, self.note]), int(width / (0.45 * size)))
+        self._text("notes", "\n".join(lines), (size, 0.6 * size), 0.75 * size)
 
     def _text(self, name: str, text: str, place: tuple[float, float], size: float, centred: bool = False) -> None:
         font = f"{get_data_path()}/fonts/ttf/DejaVuSans.ttf"  # that of the other pictures; knows most letters
@@ -229,10 +248,12 @@ class Stage:
             title_font_size=1, width=wide, height=2.4 * size / height, position_x=left, position_y=bottom,
             unconstrained_font_size=True, render=False,
         )  # fmt: skip
-        for k, value in enumerate(np.linspace(*self.limits, 5)):  # VTK's own numbers stand left or right of their place
-            place = (left + 0.25 * k * wide) * width, 5.4 * size
-            self._text(f"number {k}", f"{value:#.3g}".rstrip("."), place, 0.9 * size, centred=True)
-        self._text("label", self.look.label(), (width / 2.0, 7.2 * size), size, centred=True)
+        numbers = [f"{value:#.3g}".rstrip(".") for value in np.linspace(*self.limits, 5)]
+        for k, number in enumerate(numbers):  # VTK's own stand left or right of their place
+            if k == 2 or numbers[0] != numbers[-1]:
+                place = (left + 0.25 * k * wide) * width, 6.3 * size
+                self._text(f"number {k}", number, place, 0.9 * size, centred=True)
+        self._text("label", self.look.label(), (width / 2.0, 8.0 * size), size, centred=True)
 
     def _letters(self) -> float:
         """Size of letters for the size of the window."""

@@ -66,7 +66,7 @@ def save_shape(
         known = " or ".join(f"{name} ({meaning})" for name, meaning in ENDINGS.items())
         raise SpecError(str(path), allowed=f"must end in {known}")
     shape = the_result("save_shape", result)
-    look = Look.of("save_shape", shape, colour, False, False, False, "horizontal", 0.0, 0.0, None)
+    look = Look.of("save_shape", shape, colour, False, False, False, "horizontal", 0.0, 0.0, 1.0, None)
     number = the_state("save_shape", shape, state)
     disk.check_target(path, force)
     braid = look.braid(shape, number)
