@@ -59,7 +59,7 @@ def view(
     """
     from mckibben import disk
     from mckibben.files import store
-    from mckibben.view import animate, look, render, scene, shapefile
+    from mckibben.view import animate, look, render, scene, shapefile, stage
 
     kinds = {".png": "a picture"} | animate.ENDINGS | shapefile.ENDINGS
     ending = None if output is None else store.suffix_of(output, kinds)
@@ -86,7 +86,7 @@ def view(
             say(look.left_out(result))
     else:
         plotter = scene.scene(result, state, off_screen=True, **drawing)
-        disk.write(output, scene.png(plotter), force)
+        disk.write(output, stage.png(plotter), force)
         plotter.close()
         say(f"drawn: {output}")
 

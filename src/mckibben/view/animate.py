@@ -15,7 +15,7 @@ from PIL import Image
 from mckibben import disk
 from mckibben.spec.errors import SpecError
 from mckibben.view.look import Look, left_out, reached, the_result
-from mckibben.view.scene import Stage, image
+from mckibben.view.stage import Stage, image
 
 __all__ = ["ENDINGS", "animate"]
 

@@ -94,7 +94,9 @@ class Look:
         if not len(finite):
             return 0.0, 1.0
         low, high = float(np.min(finite)), float(np.max(finite))
-        least = 1e-6 * max(abs(low), abs(high), 1e-9)
+        if low == high == 0.0:
+            return 0.0, 1.0
+        least = 1e-6 * max(abs(low), abs(high))
         return (low, high) if high - low > least else (low - 50.0 * least, high + 50.0 * least)
 
 

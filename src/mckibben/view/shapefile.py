@@ -164,7 +164,7 @@ def glb(parts: dict[str, Mesh], colours: dict[str, Any]) -> bytes:
 def _vtp(name: str, result: Result, state: int, braid: Braid) -> bytes:
     """A VTK XML file of all parts with all fields."""
     library(name)
-    from mckibben.view.scene import poly_data
+    from mckibben.view.stage import poly_data
 
     parts = _parts(braid)
     numbers = {"fibres": 0, "chamber": 1, "fittings": 2}
