@@ -20,7 +20,8 @@ from mckibben.spec import TESTS, Muscle, spec_classes
 from mckibben.spec.rows import ASSUMED, muscle_rows, part_rows, test_rows
 from mckibben.view import style
 from mckibben.view.plot import plot
-from mckibben.view.shape3d import Tube, draw_muscle
+from mckibben.view.shape3d import draw_muscle
+from mckibben.view.tube import Tube
 
 __all__ = ["html"]
 
