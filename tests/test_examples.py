@@ -16,7 +16,7 @@ from mckibben.app.cli import app
 pytestmark = pytest.mark.docs
 
 EXAMPLES = Path(__file__).parent.parent / "examples"
-CASES = sorted(set(EXAMPLES.glob("*.toml")) - {EXAMPLES / "fit.toml"})
+CASES = sorted(set(EXAMPLES.glob("*.toml")) - {EXAMPLES / "fit.toml", EXAMPLES / "design.toml"})
 HALF_A_DIGIT = 6e-4
 """The theory page has three decimals, of N and of mm."""
 
@@ -133,6 +133,44 @@ def test_the_fit_file_is_the_same_fit() -> None:
     assert done.exit_code == 0, done.output
     found = json.loads(done.stdout)["numbers"]
     assert np.rad2deg(found["braid.angle"]["value"]) == pytest.approx(36.2106, abs=2e-3)
+
+
+def test_design_muscle(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]) -> None:
+    rows = printed("design_muscle.py", tmp_path, monkeypatch, capsys)
+    angle, radius, fibres, wall, mass, force, stroke, diameter, safety = rows[:9]
+    assert (angle[0], wall[0]) == (70.0, 0.4)  # at their bounds
+    assert (radius[0], fibres[0], mass[0]) == (pytest.approx(3.731, abs=0.02), 86.0, pytest.approx(3.192, abs=0.002))
+    assert force[-1] == pytest.approx(150.0, abs=0.05)
+    assert stroke[-1] == pytest.approx(35.3, abs=0.1)
+    assert (diameter[-1], safety[-1]) == (pytest.approx(17.95, abs=0.05), pytest.approx(3.06, abs=0.01))
+    assert (tmp_path / "out" / "design.png").stat().st_size > 10_000
+
+
+def test_the_design_file_is_the_same_design(monkeypatch: pytest.MonkeyPatch) -> None:
+    from mckibben.designing.designfile import read_design
+
+    given: dict[str, object] = {}
+
+    def noted(muscle: mk.Muscle, **others: object) -> None:
+        given.update(others, muscle=muscle)
+        raise InterruptedError
+
+    monkeypatch.setattr("mckibben.designing.design.design", noted)
+    with pytest.raises(InterruptedError):
+        runpy.run_path(str(EXAMPLES / "design_muscle.py"), run_name="__main__")
+    asked = read_design(EXAMPLES / "design.toml")
+    assert asked.muscle == given["muscle"]
+    assert (asked.free, asked.options) == (given["free"], {"designs": given["designs"]})
+    assert ([*asked.objective], [*asked.subject_to]) == ([given["objective"]], given["subject_to"])
+
+
+def test_design_front(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]) -> None:
+    rows = printed("design_front.py", tmp_path, monkeypatch, capsys)
+    assert rows[0][0] >= 8
+    strong, far = rows[1], rows[2]
+    assert (strong[0], strong[2]) == (pytest.approx(425.6, rel=0.02), pytest.approx(35.89, abs=0.1))
+    assert (far[0], far[2]) == (pytest.approx(280.0, rel=0.05), pytest.approx(36.93, abs=0.1))
+    assert (tmp_path / "out" / "design_front.png").stat().st_size > 10_000
 
 
 def made_up() -> mk.Muscle:

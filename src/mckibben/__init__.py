@@ -14,6 +14,13 @@ _PUBLIC = {
         "SpecError",
     ),
     "mckibben.spec.sleeve": ("centre_radius",),
+    "mckibben.spec.measures": (
+        "AirVolume", "CurveMiss", "ForceAt", "Mass", "PressureFor", "Stroke",
+    ),
+    "mckibben.spec.ranged": (
+        "Diameter", "FibreSafety", "FibreTension", "ForceVariation", "JammingMargin", "Work",
+    ),
+    "mckibben.spec.wishes": ("Demand", "Maximise", "Minimise"),
     "mckibben.experiments.run": ("run",),
     "mckibben.experiments.solve": ("solve",),
     "mckibben.experiments.limits": ("Limits", "least_pressure", "limits", "working_range"),
@@ -30,6 +37,8 @@ _PUBLIC = {
     "mckibben.fitting.fit": ("fit",),
     "mckibben.fitting.answer": ("Fit",),
     "mckibben.fitting.choice": ("compare_models",),
+    "mckibben.designing.design": ("design",),
+    "mckibben.designing.answer": ("Design",),
     "mckibben.view.plot": ("plot",),
     "mckibben.view.scene": ("scene",),
     "mckibben.view.animate": ("animate",),
@@ -40,7 +49,7 @@ _PUBLIC = {
     "mckibben.data.values": ("Data",),
     "mckibben.files.case": ("read_case",),
     "mckibben.files.store": ("save",),
-    "mckibben.fitting.load": ("load",),
+    "mckibben.designing.load": ("load",),
 }  # fmt: skip
 _HOME = {name: module for module, names in _PUBLIC.items() for name in names}
 _MODULES = ("presets",)

@@ -222,7 +222,23 @@ def _si_of(unit: str) -> str:
     """The package's SI unit for the kind of `unit`."""
     if unit in _USUAL:
         return _USUAL[unit][0]
-    for candidate in ("m", "N", "Pa", "rad", "m^3", "N m^2", "J", "J/m", "1/m", "m^2", "N/m", "m/N"):
+    for candidate in (
+        "m",
+        "N",
+        "Pa",
+        "rad",
+        "m^3",
+        "N m^2",
+        "J",
+        "J/m",
+        "1/m",
+        "m^2",
+        "N/m",
+        "m/N",
+        "kg",
+        "kg/m^3",
+        "J/kg",
+    ):
         try:
             _factor(unit, candidate)
         except UnitError:

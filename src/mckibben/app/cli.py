@@ -10,6 +10,7 @@ from typing import Annotated
 import typer
 
 from mckibben.app import data as commands_data
+from mckibben.app import design as commands_design
 from mckibben.app import draw as commands_draw
 from mckibben.app import effects as commands_effects
 from mckibben.app import fit as commands_fit
@@ -43,6 +44,7 @@ app.command(epilog=commands_sweep.EPILOG)(commands_sweep.sweep)
 app.command(epilog=commands_derive.SENSITIVITY)(commands_derive.sensitivity)
 app.command(epilog=commands_effects.EPILOG)(commands_effects.effects)
 app.command(epilog=commands_fit.EPILOG)(commands_fit.fit)
+app.command(epilog=commands_design.EPILOG)(commands_design.design)
 app.command(epilog=commands_reach.LIMITS)(commands_reach.limits)
 app.command(epilog=commands_reach.WORKING_RANGE)(commands_reach.working_range)
 app.command(epilog=commands_reach.FORCE_MAP)(commands_reach.force_map)

@@ -17,6 +17,7 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
     from mckibben.data.values import Data
+    from mckibben.results.design import Designed
     from mckibben.results.fit import Fitted
     from mckibben.results.result import Result
 
@@ -49,7 +50,7 @@ class Kind(StrEnum):
 @command
 def plot(
     file: Annotated[
-        Path, typer.Argument(metavar="FILE.nc", help="a result or a fit saved by mckibben run or fit -o FILE.nc")
+        Path, typer.Argument(metavar="FILE.nc", help="what mckibben run, fit or design saved with -o FILE.nc")
     ],
     output: Annotated[
         Path | None,
@@ -96,7 +97,7 @@ def plot(
         say(f"model less measured: {compare.compare(result, measured)}")
 
 
-def _figure(result: Result | Fitted, kind: Kind, measured: Data | None) -> Figure:
+def _figure(result: Result | Fitted | Designed, kind: Kind, measured: Data | None) -> Figure:
     import matplotlib
 
     matplotlib.use("Agg")  # draws to files only, without a window

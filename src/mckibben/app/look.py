@@ -190,9 +190,15 @@ def _content(file: Path) -> list[tuple[str, str]]:
     from mckibben.results.result import Result
 
     if not isinstance(found, Result):
-        from mckibben.app import fitted
+        from mckibben.results.fit import Fitted
 
-        return [("file", str(file)), *fitted.described(found)]
+        if isinstance(found, Fitted):
+            from mckibben.app import fitted
+
+            return [("file", str(file)), *fitted.described(found)]
+        from mckibben.app import designed
+
+        return [("file", str(file)), *designed.described(found)]
     result = found
     about = result.attributes
     verdicts = Counter(result.verdict)

@@ -45,7 +45,8 @@ def read_case(path: str | PathLike[str], overrides: Iterable[str] = (), *, test_
     if "sweep" in mapping:
         raise SpecError(str(path), allowed="describes a sweep", advice="give it to mckibben sweep")
     if "free" in mapping:
-        raise SpecError(str(path), allowed="describes a fit", advice="give it to mckibben fit")
+        what = "design" if "objective" in mapping else "fit"
+        raise SpecError(str(path), allowed=f"describes a {what}", advice=f"give it to mckibben {what}")
     return from_mapping(apply_overrides(mapping, overrides), test_required=test_required)
 
 

@@ -4,21 +4,16 @@ from __future__ import annotations
 
 import csv
 import io
-import tomllib
 from collections.abc import Iterator
 from os import PathLike
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
-import numpy as np
-
-from mckibben.files.hdf5 import HOLDS, kind, opened, written
+from mckibben.files.hdf5 import opened
+from mckibben.files.stored import checked, muscle_in
+from mckibben.files.stored import write as written
 from mckibben.files.table import write
 from mckibben.results.fit import NUMBERS, POINTS, Fitted
-from mckibben.spec import Muscle
-from mckibben.spec.errors import SpecError
-from mckibben.spec.plausible import trusted
-from mckibben.spec.text import muscle_from_mapping
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -41,13 +36,7 @@ _ABOUT = {"muscle": str, "given": str, "notes": str, "source": str, "mckibben_ve
 
 def save(fit: Fitted, path: str | PathLike[str], force: bool = False) -> Path:
     """Write a fit as a NetCDF-4 file; SpecError if the file exists (without `force`) or cannot be written."""
-    data = fit.data
-    variables = {str(name): (tuple(map(str, item.dims)), item.values, item.attrs)
-                 for name, item in data.variables.items()}  # fmt: skip
-    texts = {name: (dims, array.astype(str) if array.dtype.kind in "OT" else array, about)
-             for name, (dims, array, about) in variables.items()}  # fmt: skip
-    sizes = {str(name): int(size) for name, size in data.sizes.items()}
-    return written(path, sizes, texts, {HOLDS: "fit"} | data.attrs, force)
+    return written(fit.data, "fit", path, force)
 
 
 def load(path: str | PathLike[str]) -> Fitted:
@@ -57,43 +46,8 @@ def load(path: str | PathLike[str]) -> Fitted:
 
 def of(stored: xr.Dataset, name: str) -> Fitted:
     """The fit that a file of this name holds; SpecError where it holds something else."""
-    import xarray as xr
-
-    if kind(stored) != "fit":
-        raise SpecError(name, allowed="holds no fit of mckibben", advice="give what mckibben fit or mk.save wrote")
-    about = {str(key): _plain(value) for key, value in stored.attrs.items() if key != HOLDS}
-    for key, type_ in _ABOUT.items():
-        if not isinstance(about.get(key), type_):
-            raise SpecError(name, allowed=f"does not say its {key}", advice="make it again")
-    variables = {}
-    for variable in [*_NEEDED, *(str(one) for one in stored.variables if one not in _NEEDED)]:
-        if variable not in stored.variables:
-            raise SpecError(name, allowed=f"holds no {variable} of a fit (written by {about['mckibben_version']})")
-        array = np.asarray(stored[variable].values)
-        array = array.astype(str) if array.dtype.kind in "OT" else array
-        dims = tuple(map(str, stored[variable].dims))
-        if _NEEDED.get(variable, (dims, array.dtype.kind)) != (dims, array.dtype.kind):
-            raise SpecError(name, allowed=f"holds {variable} per {' and '.join(dims)} as {array.dtype}")
-        array.flags.writeable = False
-        variables[variable] = (dims, array, dict(stored[variable].attrs))
-    coords = {axis: variables.pop(axis) for axis in ("number", "other")}
-    data = xr.Dataset({str(one): variables[str(one)] for one in stored.data_vars}, coords, about)
-    return Fitted(_muscle(name, about["muscle"]), _muscle(name, about["given"]), data)
-
-
-def _plain(value: Any) -> Any:
-    return value.item() if isinstance(value, np.generic) else value
-
-
-def _muscle(name: str, text: str) -> Muscle:
-    try:
-        with trusted():
-            return muscle_from_mapping(tomllib.loads(text))
-    except SpecError as error:
-        advice = "its numbers can be read with xarray.open_dataset"
-        raise SpecError(name, allowed=f"its muscle cannot be built again: {error}", advice=advice) from error
-    except (ValueError, RecursionError) as error:
-        raise SpecError(name, allowed="is damaged: its muscle is not TOML", advice="make it again") from error
+    data = checked(stored, name, "fit", _NEEDED, _ABOUT, ("number", "other"))
+    return Fitted(muscle_in(name, data.attrs["muscle"]), muscle_in(name, data.attrs["given"]), data)
 
 
 def save_csv(fit: Fitted, path: str | PathLike[str], force: bool = False) -> Path:

@@ -1,4 +1,4 @@
-"""Saving and loading results by the ending of the file's name."""
+"""Saving and loading results, fits and designs by the ending of the file's name."""
 
 from __future__ import annotations
 
@@ -10,6 +10,7 @@ from mckibben import disk
 from mckibben.spec.errors import SpecError
 
 if TYPE_CHECKING:
+    from mckibben.results.design import Designed
     from mckibben.results.fit import Fitted
     from mckibben.results.result import Result
 
@@ -38,13 +39,14 @@ def check_output(path: str | PathLike[str], force: bool = False) -> None:
 
 
 def save(result: Any, path: str | PathLike[str], force: bool = False) -> Path:
-    """Save a result or a fit: `.nc` keeps everything and can be loaded again, `.csv` is a table.
+    """Save a result, a fit or a design: `.nc` keeps everything and can be loaded again, `.csv` is a table.
 
     A table holds nothing but its head and its rows, which are states, of a fit the measured points with their
-    residuals; what was computed and by what is in a text file beside it ("out.csv.txt").
+    residuals, of a design its front; what was computed and by what is in a text file beside it ("out.csv.txt").
 
     Args:
-        result: what `run`, `solve` or `fit` gave. Of a `State` its `result` is saved, and that is what `load` gives.
+        result: what `run`, `solve`, `fit` or `design` gave. Of a `State` its `result` is saved, and that is what `load`
+            gives.
         path: the file; its ending says the format. It is written whole or not at all.
         force: replace a file that is there already.
 
@@ -64,9 +66,15 @@ def save(result: Any, path: str | PathLike[str], force: bool = False) -> Path:
 
     whole = suffix_of(path) == ".nc"
     if not isinstance(result, Result):
-        from mckibben.files import fits
+        from mckibben.results.fit import Fitted
 
-        return (fits.save if whole else fits.save_csv)(result, path, force)
+        if isinstance(result, Fitted):
+            from mckibben.files import fits
+
+            return (fits.save if whole else fits.save_csv)(result, path, force)
+        from mckibben.files import designs
+
+        return (designs.save if whole else designs.save_csv)(result, path, force)
     if whole:
         from mckibben.files import netcdf
 
@@ -76,23 +84,26 @@ def save(result: Any, path: str | PathLike[str], force: bool = False) -> Path:
     return table.save_csv(result, path, force)
 
 
-def _result(given: Any) -> Result | Fitted:
+def _result(given: Any) -> Result | Fitted | Designed:
+    from mckibben.results.design import Designed
     from mckibben.results.fit import Fitted
     from mckibben.results.result import Result, State
 
     if isinstance(given, State):
         return given.result
-    if isinstance(given, (Result, Fitted)):
+    if isinstance(given, (Result, Fitted, Designed)):
         return given
     if hasattr(given, "to_netcdf"):
         raise SpecError(
-            "save", allowed="takes what run, solve or fit gave", advice='write a Dataset with data.to_netcdf("x.nc")'
+            "save",
+            allowed="takes what run, solve, fit or design gave",
+            advice='write a Dataset with data.to_netcdf("x.nc")',
         )
-    raise SpecError("save", given, "must be what run, solve or fit gave")
+    raise SpecError("save", given, "must be what run, solve, fit or design gave")
 
 
-def load(path: str | PathLike[str]) -> Result | Fitted:
-    """The result or the fit in an `.nc` file. SpecError for any file that is neither, or not whole."""
+def load(path: str | PathLike[str]) -> Result | Fitted | Designed:
+    """The result, the fit or the design in an `.nc` file. SpecError for any other file, or one that is not whole."""
     if Path(path).suffix.lower() == ".csv":
         raise SpecError(str(path), allowed="is a table only", advice="save results as .nc to load them again")
     if Path(path).suffix.lower() == ".zarr":
@@ -104,6 +115,10 @@ def load(path: str | PathLike[str]) -> Result | Fitted:
         from mckibben.files import fits
 
         return fits.of(stored, str(path))
+    if hdf5.kind(stored) == "design":
+        from mckibben.files import designs
+
+        return designs.of(stored, str(path))
     return netcdf.of(stored, str(path))
 
 
@@ -113,5 +128,6 @@ def load_result(path: str | PathLike[str]) -> Result:
     from mckibben.results.result import Result
 
     if not isinstance(found, Result):
-        raise SpecError(str(path), allowed="holds a fit, not a result", advice="open it with mckibben.load")
+        what = "fit" if hasattr(found, "residuals") else "design"
+        raise SpecError(str(path), allowed=f"holds a {what}, not a result", advice="open it with mckibben.load")
     return found

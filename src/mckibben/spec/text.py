@@ -29,6 +29,7 @@ from mckibben.spec.plausible import as_text
 __all__ = [
     "Case",
     "apply_overrides",
+    "build",
     "from_mapping",
     "muscle_from_mapping",
     "part_from_plain",
@@ -68,7 +69,7 @@ def muscle_from_mapping(mapping: Any) -> Muscle:
         if not isinstance(name, str):
             raise SpecError("muscle.preset", name, "must be a name", f"choose from {', '.join(presets.names())}")
         table = merged(to_mapping(presets.get(name)), table)
-    muscle: Muscle = _build(Muscle, table, "muscle", "muscle")
+    muscle: Muscle = build(Muscle, table, "muscle", "muscle")
     return muscle
 
 
@@ -76,7 +77,7 @@ def test_from_mapping(mapping: Any) -> Test:
     """A test from its table, by its `kind`."""
     table = dict(_table(mapping, "test", "test"))
     kind = _name(table, "kind", "test", TESTS)
-    test: Test = _build(TESTS[kind], table, "test", "test")
+    test: Test = build(TESTS[kind], table, "test", "test")
     return test
 
 
@@ -121,7 +122,7 @@ def _name(table: dict[str, Any], key: str, field: str, options: Mapping[str, typ
     return name
 
 
-def _build(cls: type, mapping: Any, field: str, file_path: str) -> Any:
+def build(cls: type, mapping: Any, field: str, file_path: str) -> Any:
     """An object of a spec class from its table. `field` is its name in errors, as `Muscle.replace` takes it."""
     table = _table(mapping, field, file_path)
     declared = {item.name: item for item in describe(cls)}
@@ -147,19 +148,19 @@ def _value(item: Declared, value: Any, field: str, file_path: str) -> Any:
     if item.kind == "steps":
         if not isinstance(value, (list, tuple)):
             raise SpecError(inner, value, "must be a list of tables", "write [[test.steps]] for each")
-        return [_build(Step, step, f"{inner}[{i}]", f"{file_path}.{item.name}[{i}]") for i, step in enumerate(value)]
+        return [build(Step, step, f"{inner}[{i}]", f"{file_path}.{item.name}[{i}]") for i, step in enumerate(value)]
     if item.kind != "part":
         return value
     if value == "none" and item.default is None:
         return None
     if len(item.parts) == 1:
-        return _build(item.parts[0], value, inner, f"{file_path}.{item.name}")
+        return build(item.parts[0], value, inner, f"{file_path}.{item.name}")
     table = dict(_table(value, inner, f"{file_path}.{item.name}"))
     name = _name(table, "name", inner, LAWS)
     if name == CustomLaw.name:
         said = "a law of your own is a Python function and cannot be read from a file"
         raise SpecError(inner, allowed=said, advice="build the muscle in Python")
-    return _build(LAWS[name], table, inner, f"{file_path}.{item.name}")
+    return build(LAWS[name], table, inner, f"{file_path}.{item.name}")
 
 
 def to_mapping(value: Case | Muscle | Test, *, allow_custom: bool = False) -> dict[str, Any]:

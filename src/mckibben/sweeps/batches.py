@@ -43,11 +43,16 @@ class Solved:
 
 
 def solve_together(
-    group: Group, tolerance: float, watch: Callable[[int], None] = lambda done: None, threads: int = 1
+    group: Group,
+    tolerance: float,
+    watch: Callable[[int], None] = lambda done: None,
+    threads: int = 1,
+    left_out: float = 0.0,
 ) -> list[Solved]:
     """The designs of a group that batches can do, on as many unknowns as the tolerance needs.
 
-    With several threads some batches are solved at a time; the numbers are the same.
+    With several threads some batches are solved at a time; the numbers are the same. Where no more than a share
+    `left_out` of the designs is not followed cleanly, no second and longer way is tried for these.
     """
     found: list[Solved] = []
     left = np.arange(len(group))
@@ -55,7 +60,9 @@ def solve_together(
         close = CLOSE * math.sqrt(tolerance)
         for size in (size for size in sizes_for("spectral", tolerance) if size <= LARGEST):
             line = attrs.evolve(group.line, size=size)
-            paths = finer(pool, followed(pool, group.take(left), line, close), close)
+            paths = followed(pool, group.take(left), line, close)
+            if (~paths.good).sum() > left_out * len(paths.good):
+                paths = finer(pool, paths, close)
             coarse = []
             for solved, where in _read(pool, paths):
                 good = solved.numbers["error_estimate"].max(axis=1, initial=0.0) <= tolerance

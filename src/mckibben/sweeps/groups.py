@@ -22,7 +22,7 @@ from mckibben.spec.limits import certainly_fits
 from mckibben.spec.vary import changed
 from mckibben.sweeps.plan import Piece
 
-__all__ = ["Group", "group_of", "groups", "surely_reached"]
+__all__ = ["Group", "group_of", "grouped", "groups", "surely_reached", "with_arrays"]
 
 NEAR_EXTENSION = 0.98
 """Share of a length surely below full extension from which on a design is solved singly."""
@@ -67,7 +67,7 @@ def groups(piece: Piece) -> list[Group]:
                 for column, name in enumerate(piece.fields)
                 if split[members[0]][column][1]
             }
-            made = _group(*base, values, np.array(members))
+            made = grouped(*base, values, np.array(members))
         except (SpecError, ValueError, ArithmeticError):  # the first may be wrong where others are not
             continue
         if made is not None:
@@ -78,7 +78,7 @@ def groups(piece: Piece) -> list[Group]:
 def group_of(muscle: Muscle, test: Test) -> Group | None:
     """One design alone; None where only the single solver will do."""
     try:
-        return _group(muscle, test, {}, np.zeros(1, int))
+        return grouped(muscle, test, {}, np.zeros(1, int))
     except (SpecError, ValueError, ArithmeticError):
         return None
 
@@ -98,7 +98,7 @@ def _parts(value: Any) -> tuple[Any, tuple[float, ...]]:
     return value, ()
 
 
-def _group(muscle: Muscle, test: Test, values: dict[str, np.ndarray], index: np.ndarray) -> Group | None:
+def grouped(muscle: Muscle, test: Test, values: dict[str, np.ndarray], index: np.ndarray) -> Group | None:
     """Designs like one, with some numbers (designs, how many) anew; those that are not certainly valid are left out."""
     resized = not _MAKE_THE_LENGTH.isdisjoint(values)
     if isinstance(test, BlockedForce) and test.length is None and resized:
@@ -118,7 +118,7 @@ def _group(muscle: Muscle, test: Test, values: dict[str, np.ndarray], index: np.
         return None
     if muscle.ends == Ends.FREE and held[0] == "force":  # nearly singular: Newton without a search does not settle
         return None
-    several = _with(muscle, values)
+    several = with_arrays(muscle, values)
     if several is None:
         return None
     count = len(index)
@@ -144,7 +144,7 @@ def _followed(step: Step, held: tuple[str, ...]) -> bool:
     return step.gas is None and step.along == Along.VALUES and tuple(str(name) for name in step.controls) == held
 
 
-def _with(muscle: Muscle, values: dict[str, np.ndarray]) -> Muscle | None:
+def with_arrays(muscle: Muscle, values: dict[str, np.ndarray]) -> Muscle | None:
     """The muscle with arrays for some of its numbers; None for a field that is no single number of it."""
     names = [name for name, _, _ in leaves_of(muscle)]
     leaves, tree = jax.tree.flatten(muscle)

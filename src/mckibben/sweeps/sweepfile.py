@@ -38,7 +38,8 @@ def read_sweep(path: str | PathLike[str], overrides: Iterable[str] = (), *, requ
     """
     mapping = read_mapping(path)
     if "free" in mapping:
-        raise SpecError(str(path), allowed="describes a fit", advice="give it to mckibben fit")
+        what = "design" if "objective" in mapping else "fit"
+        raise SpecError(str(path), allowed=f"describes a {what}", advice=f"give it to mckibben {what}")
     if "sweep" not in mapping:
         if required:
             raise SpecError("sweep", allowed="is missing", advice=f"write a [sweep] table, {_EXAMPLE}")

@@ -8,6 +8,7 @@ from typing import Any
 from matplotlib.figure import Figure
 
 from mckibben.data.values import Data
+from mckibben.results.design import Designed
 from mckibben.results.effects import Effects
 from mckibben.results.fit import Fitted
 from mckibben.results.result import Result, State
@@ -16,6 +17,7 @@ from mckibben.spec import BlockedForce, FreeContraction, Path, Protocol
 from mckibben.spec.errors import SpecError, nearest
 from mckibben.units import show
 from mckibben.view import curves, maps, style
+from mckibben.view.design import designed
 from mckibben.view.effects import bars
 from mckibben.view.fit import fitted
 from mckibben.view.measured import overlay
@@ -31,11 +33,11 @@ KINDS: dict[str, Callable[[Result], Figure]] = {
     "shares": curves.shares,
 }
 """The pictures of a result."""
-_TAKES = "a result of run, solve, fit, sensitivity, effects, force_map or working_range"
+_TAKES = "a result of run, solve, fit, design, sensitivity, effects, force_map or working_range"
 
 
 def plot(result: Any, kind: str = "auto", data: Any = None) -> Figure:
-    """Draw what `run`, `solve`, `load`, `fit`, `sensitivity`, `effects`, `force_map` or `working_range` gave.
+    """Draw what `run`, `solve`, `load`, `fit`, `design`, `sensitivity`, `effects`, `force_map` or `working_range` gave.
 
     Nothing is solved.
 
@@ -44,7 +46,8 @@ def plot(result: Any, kind: str = "auto", data: Any = None) -> Figure:
     force, length and pressure state by state, and force against length. States that are not stable are marked; states
     that were not reached are gaps, with a note. A `State` is drawn as its radius and braid angle along the muscle, a
     force map as contours over length and pressure, a working range as the region in that plane, a sensitivity as a
-    tornado chart, effects as bars, a fit as its forces over the measured ones, with what is left.
+    tornado chart, effects as bars, a fit as its forces over the measured ones, with what is left, a
+    design as the force of the best over its contraction with what was demanded, or as its front.
 
     Args:
         result: what one of these calls gave, or several results of one kind of test by their names, as
@@ -81,7 +84,7 @@ def plot(result: Any, kind: str = "auto", data: Any = None) -> Figure:
         return _headed(KINDS["profiles" if kind == "auto" else kind](result.result), result.result)
     if isinstance(result, Mapping) and not hasattr(result, "data_vars"):
         return _family(result, kind)
-    own: dict[type, Callable[[Any], Figure]] = {Sensitivity: tornado, Effects: bars, Fitted: fitted}
+    own: dict[type, Callable[[Any], Figure]] = {Sensitivity: tornado, Effects: bars, Fitted: fitted, Designed: designed}
     draw = next((draw for kinds, draw in own.items() if isinstance(result, kinds)), None) or _of_dataset(result)
     if kind != "auto":
         raise SpecError("plot.kind", kind, "is for a result or a state", "leave it out")

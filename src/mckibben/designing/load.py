@@ -1,4 +1,4 @@
-"""Opening what was saved, by the ending of its name and by what is in it: a result, a fit, or the store of a sweep."""
+"""Opening what was saved, by the ending of its name and what is in it: a result, a fit, a design, or a sweep."""
 
 from __future__ import annotations
 
@@ -11,20 +11,21 @@ from mckibben.files import store
 if TYPE_CHECKING:
     from xarray import Dataset
 
+    from mckibben.designing.answer import Design
     from mckibben.fitting.answer import Fit
     from mckibben.results.result import Result
 
 __all__ = ["load"]
 
 
-def load(path: str | PathLike[str]) -> Result | Fit | Dataset:
-    """The result or the fit in an `.nc` file, equal to what was saved, or the sweep in a `.zarr` store.
+def load(path: str | PathLike[str]) -> Result | Fit | Design | Dataset:
+    """The result, the fit or the design in an `.nc` file, equal to what was saved, or the sweep in a `.zarr` store.
 
     Args:
         path: the file or the store.
 
     Returns:
-        A `Result` or a `Fit`; for a sweep an xarray Dataset that is read from the disk when used.
+        A `Result`, a `Fit` or a `Design`; for a sweep an xarray Dataset that is read from the disk when used.
 
     Raises:
         SpecError: if there is nothing, or nothing that `save` or `sweep` wrote, or a file that is damaged.
@@ -43,6 +44,12 @@ def load(path: str | PathLike[str]) -> Result | Fit | Dataset:
 
     if isinstance(found, Result):
         return found
+    from mckibben.results.fit import Fitted
+
+    if not isinstance(found, Fitted):
+        from mckibben.designing.answer import Design
+
+        return Design(found.muscle, found.given, found.data)
     from mckibben.fitting.answer import Fit  # here, because a result takes no solver
 
     return Fit(found.muscle, found.given, found.data)
