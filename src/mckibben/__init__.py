@@ -28,6 +28,8 @@ _PUBLIC = {
     "mckibben.fitting.fit": ("fit",),
     "mckibben.fitting.answer": ("Fit",),
     "mckibben.fitting.choice": ("compare_models",),
+    "mckibben.scatter.tolerances": ("tolerances",),
+    "mckibben.results.tolerances": ("Tolerances",),
     "mckibben.view.plot": ("plot",),
     "mckibben.results.result": ("Result", "State"),
     "mckibben.data.read": ("read_data",),

@@ -18,6 +18,7 @@ from mckibben.app import reach as commands_reach
 from mckibben.app import run as commands_run
 from mckibben.app import sensitivity as commands_derive
 from mckibben.app import sweep as commands_sweep
+from mckibben.app import tolerances as commands_tolerances
 from mckibben.app.console import examples
 
 __all__ = ["app", "main"]
@@ -40,6 +41,7 @@ app = typer.Typer(
 app.command(epilog=commands_run.EPILOG)(commands_run.run)
 app.command(epilog=commands_sweep.EPILOG)(commands_sweep.sweep)
 app.command(epilog=commands_derive.SENSITIVITY)(commands_derive.sensitivity)
+app.command(epilog=commands_tolerances.EPILOG)(commands_tolerances.tolerances)
 app.command(epilog=commands_effects.EPILOG)(commands_effects.effects)
 app.command(epilog=commands_fit.EPILOG)(commands_fit.fit)
 app.command(epilog=commands_reach.LIMITS)(commands_reach.limits)

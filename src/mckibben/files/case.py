@@ -46,6 +46,8 @@ def read_case(path: str | PathLike[str], overrides: Iterable[str] = (), *, test_
         raise SpecError(str(path), allowed="describes a sweep", advice="give it to mckibben sweep")
     if "free" in mapping:
         raise SpecError(str(path), allowed="describes a fit", advice="give it to mckibben fit")
+    if "tolerances" in mapping:
+        raise SpecError(str(path), allowed="describes tolerances", advice="give it to mckibben tolerances")
     return from_mapping(apply_overrides(mapping, overrides), test_required=test_required)
 
 
