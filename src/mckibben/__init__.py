@@ -31,6 +31,7 @@ _PUBLIC = {
     "mckibben.scatter.tolerances": ("tolerances",),
     "mckibben.results.tolerances": ("Tolerances",),
     "mckibben.view.plot": ("plot",),
+    "mckibben.sheet.datasheet": ("datasheet",),
     "mckibben.results.result": ("Result", "State"),
     "mckibben.data.read": ("read_data",),
     "mckibben.data.samples": ("sample_data",),

@@ -10,6 +10,7 @@ from typing import Annotated
 import typer
 
 from mckibben.app import data as commands_data
+from mckibben.app import datasheet as commands_sheet
 from mckibben.app import draw as commands_draw
 from mckibben.app import effects as commands_effects
 from mckibben.app import fit as commands_fit
@@ -50,6 +51,7 @@ app.command(epilog=commands_reach.FORCE_MAP)(commands_reach.force_map)
 app.command(epilog=commands_look.CHECK)(commands_look.check)
 app.command(epilog=commands_look.PRESETS)(commands_look.presets)
 app.add_typer(commands_data.data, name="data")
+app.command(epilog=commands_sheet.EPILOG)(commands_sheet.datasheet)
 app.command(epilog=commands_draw.PLOT)(commands_draw.plot)
 app.command(epilog=commands_draw.REPRODUCE)(commands_draw.reproduce)
 app.command(epilog=commands_look.INFO)(commands_look.info)
