@@ -10,6 +10,7 @@ from typing import Annotated
 import typer
 
 from mckibben.app import data as commands_data
+from mckibben.app import datasheet as commands_sheet
 from mckibben.app import design as commands_design
 from mckibben.app import draw as commands_draw
 from mckibben.app import effects as commands_effects
@@ -19,6 +20,7 @@ from mckibben.app import reach as commands_reach
 from mckibben.app import run as commands_run
 from mckibben.app import sensitivity as commands_derive
 from mckibben.app import sweep as commands_sweep
+from mckibben.app import tolerances as commands_tolerances
 from mckibben.app import view as commands_view
 from mckibben.app.console import examples
 
@@ -42,6 +44,7 @@ app = typer.Typer(
 app.command(epilog=commands_run.EPILOG)(commands_run.run)
 app.command(epilog=commands_sweep.EPILOG)(commands_sweep.sweep)
 app.command(epilog=commands_derive.SENSITIVITY)(commands_derive.sensitivity)
+app.command(epilog=commands_tolerances.EPILOG)(commands_tolerances.tolerances)
 app.command(epilog=commands_effects.EPILOG)(commands_effects.effects)
 app.command(epilog=commands_fit.EPILOG)(commands_fit.fit)
 app.command(epilog=commands_design.EPILOG)(commands_design.design)
@@ -51,6 +54,7 @@ app.command(epilog=commands_reach.FORCE_MAP)(commands_reach.force_map)
 app.command(epilog=commands_look.CHECK)(commands_look.check)
 app.command(epilog=commands_look.PRESETS)(commands_look.presets)
 app.add_typer(commands_data.data, name="data")
+app.command(epilog=commands_sheet.EPILOG)(commands_sheet.datasheet)
 app.command(epilog=commands_draw.PLOT)(commands_draw.plot)
 app.command(epilog=commands_view.EPILOG)(commands_view.view)
 app.command(epilog=commands_draw.REPRODUCE)(commands_draw.reproduce)

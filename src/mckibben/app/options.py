@@ -28,7 +28,7 @@ Held = Annotated[
 ]
 
 
-def pairs(option: str, given: Sequence[str] | None) -> dict[str, str]:
+def pairs(option: str, given: Sequence[str] | None, example: str = 'force="Load cell"') -> dict[str, str]:
     """What an option that is repeated says, by name; SpecError for what is no NAME=VALUE."""
     found = {}
     for text in given or ():
@@ -36,6 +36,6 @@ def pairs(option: str, given: Sequence[str] | None) -> dict[str, str]:
         if not (name.strip() and equals and value.strip()):
             from mckibben.spec.errors import SpecError
 
-            raise SpecError(option, text, "must be NAME=VALUE", 'such as force="Load cell"')
+            raise SpecError(option, text, "must be NAME=VALUE", f"such as {example}")
         found[name.strip()] = value.strip()
     return found

@@ -47,6 +47,8 @@ def read_case(path: str | PathLike[str], overrides: Iterable[str] = (), *, test_
     if "free" in mapping:
         what = "design" if "objective" in mapping else "fit"
         raise SpecError(str(path), allowed=f"describes a {what}", advice=f"give it to mckibben {what}")
+    if "tolerances" in mapping:
+        raise SpecError(str(path), allowed="describes tolerances", advice="give it to mckibben tolerances")
     return from_mapping(apply_overrides(mapping, overrides), test_required=test_required)
 
 

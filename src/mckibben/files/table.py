@@ -13,9 +13,11 @@ from mckibben import disk
 from mckibben.results.result import Result
 from mckibben.results.rows import COLUMNS, headed, rows
 from mckibben.results.sensitivity import Sensitivity
+from mckibben.results.tolerances import Tolerances
 from mckibben.results.variables import has
 
-__all__ = ["map_csv", "map_rows", "notes_file", "save_csv", "save_sensitivity", "write"]
+__all__ = ["map_csv", "map_rows", "notes_file", "save_csv", "save_sensitivity", "save_tolerances", "write"]
+
 
 if TYPE_CHECKING:
     from xarray import Dataset
@@ -62,6 +64,28 @@ def save_sensitivity(found: Sensitivity, path: str | PathLike[str], force: bool 
         known = [data[f"number{part}"].values[k].item() for part in ("", "_value", "_unit", "_assumed")]
         shares = [*data["relative"].values[k].tolist(), *data["absolute"].values[k].tolist()]
         writer.writerow([*map(_cell, known), *(_cell(None if share != share else share) for share in shares)])
+    return write(path, lines, text.getvalue(), force)
+
+
+def save_tolerances(found: Tolerances, path: str | PathLike[str], force: bool = False) -> Path:
+    """Write tolerances as a table in SI units: a row for each number, with its part in each result."""
+    data, text = found.data, io.StringIO(newline="")
+    about = data.attrs
+    lines = [about["title"], f"made by mckibben {about['mckibben_version']}", *found.notes, ""]
+    lines += found.spread.to_string().splitlines()
+    for table in ("muscle", "test"):
+        lines += ["", f"the {table} (TOML):", *about[table].splitlines()]
+    known = ["value", "tolerance", "deviation", "distribution", "unit", "assumed"]
+    parts = [(name, kind) for name in range(len(found.results)) for kind in ("effect", "share", "first", "total")]
+    units = data["result_unit"].values.tolist()
+    heads = [f"{found.results[k]} {kind}" + (f" [{units[k]}]" if kind == "effect" else "") for k, kind in parts]
+    writer = csv.writer(text, lineterminator="\n")
+    writer.writerow(["number", *known, *heads])
+    for row in found.order.tolist():
+        values = [data[kind].values[row, k].item() for k, kind in parts]
+        told = [data[f"number_{kind}"].values[row].item() for kind in known]
+        cells = [None if value != value else value for value in values]
+        writer.writerow([found.numbers[row], *map(_cell, told), *map(_cell, cells)])
     return write(path, lines, text.getvalue(), force)
 
 

@@ -13,6 +13,7 @@ from mckibben.results.effects import Effects
 from mckibben.results.fit import Fitted
 from mckibben.results.result import Result, State
 from mckibben.results.sensitivity import Sensitivity
+from mckibben.results.tolerances import Tolerances
 from mckibben.spec import BlockedForce, FreeContraction, Path, Protocol
 from mckibben.spec.errors import SpecError, nearest
 from mckibben.units import show
@@ -21,6 +22,7 @@ from mckibben.view.design import designed
 from mckibben.view.effects import bars
 from mckibben.view.fit import fitted
 from mckibben.view.measured import overlay
+from mckibben.view.tolerances import scatter
 from mckibben.view.tornado import tornado
 
 __all__ = ["KINDS", "plot"]
@@ -33,11 +35,11 @@ KINDS: dict[str, Callable[[Result], Figure]] = {
     "shares": curves.shares,
 }
 """The pictures of a result."""
-_TAKES = "a result of run, solve, fit, design, sensitivity, effects, force_map or working_range"
+_TAKES = "a result of run, solve, fit, design, sensitivity, tolerances, effects, force_map or working_range"
 
 
 def plot(result: Any, kind: str = "auto", data: Any = None) -> Figure:
-    """Draw what `run`, `solve`, `load`, `fit`, `design`, `sensitivity`, `effects`, `force_map` or `working_range` gave.
+    """Draw what `run`, `solve`, `load`, `fit`, `design`, `sensitivity`, `tolerances`, `effects` or a map gave.
 
     Nothing is solved.
 
@@ -46,8 +48,9 @@ def plot(result: Any, kind: str = "auto", data: Any = None) -> Figure:
     force, length and pressure state by state, and force against length. States that are not stable are marked; states
     that were not reached are gaps, with a note. A `State` is drawn as its radius and braid angle along the muscle, a
     force map as contours over length and pressure, a working range as the region in that plane, a sensitivity as a
-    tornado chart, effects as bars, a fit as its forces over the measured ones, with what is left, a
-    design as the force of the best over its contraction with what was demanded, or as its front.
+    tornado chart, tolerances as distributions with the part of each number, effects as bars, a fit as its forces over
+    the measured ones, with what is left, a design as the force of the best over its contraction with what was demanded,
+    or as its front.
 
     Args:
         result: what one of these calls gave, or several results of one kind of test by their names, as
@@ -84,7 +87,9 @@ def plot(result: Any, kind: str = "auto", data: Any = None) -> Figure:
         return _headed(KINDS["profiles" if kind == "auto" else kind](result.result), result.result)
     if isinstance(result, Mapping) and not hasattr(result, "data_vars"):
         return _family(result, kind)
-    own: dict[type, Callable[[Any], Figure]] = {Sensitivity: tornado, Effects: bars, Fitted: fitted, Designed: designed}
+    own: dict[type, Callable[[Any], Figure]] = {
+        Sensitivity: tornado, Tolerances: scatter, Effects: bars, Fitted: fitted, Designed: designed,
+    }  # fmt: skip
     draw = next((draw for kinds, draw in own.items() if isinstance(result, kinds)), None) or _of_dataset(result)
     if kind != "auto":
         raise SpecError("plot.kind", kind, "is for a result or a state", "leave it out")

@@ -59,6 +59,8 @@ TICK = 7.0
 NOTE = 5.5
 """Font size [pt] of notes below a picture, the smallest that prints well."""
 
+_FILES: Any = {"pdf.fonttype": 42, "svg.hashsalt": "mckibben"}
+"""How files are written: TrueType fonts, and names inside an SVG that are the same every time."""
 _WRITING = Lock()
 """matplotlib's settings are global: only one thread at a time may change them to write a file."""
 
@@ -190,12 +192,7 @@ def picture(figure: Figure, kind: str, pixels: int = 0) -> bytes:
     """
     nothing = {"pdf": {"CreationDate": None}, "svg": {"Date": None}}.get(kind)
     content = io.BytesIO()
-    with _WRITING:
-        before = matplotlib.rcParams["pdf.fonttype"]
-        matplotlib.rcParams["pdf.fonttype"] = 42
-        try:
-            dpi = max(200, math.ceil(pixels / figure.get_figwidth()))
-            figure.savefig(content, format=kind, dpi=dpi, metadata=nothing)
-        finally:
-            matplotlib.rcParams["pdf.fonttype"] = before
+    with _WRITING, matplotlib.rc_context(_FILES):
+        dpi = max(200, math.ceil(pixels / figure.get_figwidth()))
+        figure.savefig(content, format=kind, dpi=dpi, metadata=nothing)
     return content.getvalue()

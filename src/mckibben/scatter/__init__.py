@@ -1,0 +1,1 @@
+"""From tolerances of the numbers to the spread of the results."""

@@ -1,0 +1,226 @@
+"""What a datasheet says of a muscle, computed: a curve for each pressure, what it can do, and what is not known."""
+
+from __future__ import annotations
+
+import math
+import re
+import warnings
+from collections.abc import Callable, Iterable, Iterator
+from typing import Any
+
+import attrs
+import numpy as np
+
+from mckibben.experiments.limits import Limits, limits
+from mckibben.experiments.run import run
+from mckibben.measure.caution import MuscleWarning
+from mckibben.results.result import Result
+from mckibben.results.verdict import Verdict
+from mckibben.spec import BlockedForce, FreeContraction, Isobaric, Muscle, SpecError, Test
+from mckibben.spec.plausible import trusted
+
+__all__ = ["ATMOSPHERE", "Facts", "Known", "Level", "cautions_once", "facts"]
+
+ATMOSPHERE = 101325.0
+"""Pressure [Pa] to which the air of a stroke is converted."""
+POINTS = 16
+"""States of each curve."""
+STROKE = 0.08
+"""Free contraction below which a curve begins at a stretched length: such muscles pull where they are stretched."""
+SHORTEST = 1e-3
+"""Contraction over which a curve goes at least."""
+STRETCHED = 0.6
+"""Where such a curve begins: share of the way from the length as made to full extension."""
+USUAL = 0.25
+"""Contraction at which curves end where no free contraction is known."""
+
+
+@attrs.frozen
+class Known:
+    """A number [SI], NaN with the reason where there is none."""
+
+    value: float
+    reason: str = ""
+
+
+@attrs.frozen(eq=False)
+class Level:
+    """The muscle at one gauge pressure [Pa]."""
+
+    pressure: float
+    blocked: Known  #: force at the length as made [N]
+    contraction: Known  #: free contraction
+    length: Known  #: free length [m]
+    curve: Result
+
+
+@attrs.frozen(eq=False)
+class Facts:
+    """What is known of a muscle up to a pressure; SI units."""
+
+    muscle: Muscle
+    levels: tuple[Level, ...]  #: the last at the largest pressure
+    free: Result  #: free contractions, a state for each level
+    range: Limits | None  #: at the largest pressure
+    no_range: str  #: why there is none
+    tension: Known  #: largest of a fibre on any curve [N]
+    where: str  #: where that is
+    safety: Known  #: breaking force over it
+    diameter: Known  #: largest outside diameter on any curve [m]
+    bore: float  #: volume of air in the muscle as made, without pressure [m^3]
+    volume: Known  #: likewise free at the largest pressure
+    air: Known  #: of one stroke, at atmospheric pressure [m^3]
+    work: Known  #: of one slow stroke at the largest pressure [J]
+    mass: Known  #: without fittings [kg]
+    cautions: tuple[str, ...]
+
+    @property
+    def pressure(self) -> float:
+        """The largest pressure."""
+        return self.levels[-1].pressure
+
+
+def facts(
+    muscle: Muscle,
+    pressures: tuple[float, ...],
+    densities: tuple[float | None, float | None] = (None, None),
+    watch: Callable[[int, int], None] = lambda done, total: None,
+) -> Facts:
+    """Compute what a datasheet says at some rising gauge pressures [Pa]; densities [kg/m^3] of fibres and chamber."""
+    total = len(pressures) + 3
+    watch(0, total)
+    blocked = _run(muscle, BlockedForce(pressure=list(pressures)))
+    watch(1, total)
+    free = _run(muscle, FreeContraction(pressure=list(pressures)))
+    watch(2, total)
+    contractions = [_known(free, k, "contraction") for k in range(len(pressures))]
+    first, last = _span(muscle, contractions)
+    levels = []
+    for k, (pressure, own) in enumerate(zip(pressures, contractions, strict=True)):
+        end = last if own.reason else own.value
+        end = end if abs(end - first) > SHORTEST else first + SHORTEST
+        with trusted():  # SI numbers
+            way: Any = {"contraction": np.linspace(first, end, POINTS).tolist()}
+            curve = _run(muscle, Isobaric(pressure=pressure, **way))
+        levels.append(Level(pressure, _known(blocked, k, "force"), own, _known(free, k, "length"), curve))
+        watch(3 + k, total)
+    reach, why = _range(muscle, pressures[-1])
+    watch(total, total)
+    results = [blocked, free, *(level.curve for level in levels)]
+    tension, where = _tension(results)
+    strength = muscle.braid.fibre.breaking_force
+    safety = Known(math.nan, "not known: the breaking force of a fibre")
+    if strength is not None:
+        safety = Known(strength / tension.value) if tension.value > 0.0 else Known(math.nan, "no fibre is pulled")
+    made, volume = _bore(muscle), _known(free, len(pressures) - 1, "air_volume")
+    filled = (pressures[-1] + ATMOSPHERE) / ATMOSPHERE * volume.value - made
+    return Facts(
+        muscle, tuple(levels), free, reach, why, tension, where, safety, _diameter(levels, muscle), made, volume,
+        Known(filled, volume.reason), _work(levels[-1]), _mass(muscle, *densities),
+        tuple(cautions_once(one.cautions for one in results)),
+    )  # fmt: skip
+
+
+def _run(muscle: Muscle, test: Test) -> Result:
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", MuscleWarning)  # the sheet has them
+        return run(muscle, test, tolerance=1e-4)
+
+
+def _known(result: Result, k: int, name: str) -> Known:
+    """A number of a state that is stable; else why there is none."""
+    if result.verdict[k] == Verdict.STABLE:
+        return Known(float(result.column(name)[k]))
+    reason, verdict = str(result.column("reason")[k]), result.verdict[k]
+    return Known(math.nan, reason if reason.startswith(verdict) else f"{verdict}: {reason}")
+
+
+def stable(result: Result) -> np.ndarray:
+    """Which states are stable."""
+    return np.array([word == Verdict.STABLE for word in result.verdict])
+
+
+def _span(muscle: Muscle, contractions: list[Known]) -> tuple[float, float]:
+    """Contractions between which the curves go; each ends where the muscle is free, if that is known."""
+    known = [one.value for one in contractions if one.value == one.value]
+    far = max(known, key=abs) if known else USUAL
+    if far >= STROKE or far < -0.02:
+        return 0.0, far
+    braid, rest = muscle.braid, float(muscle.rest_length)
+    return -STRETCHED * (braid.length / math.sin(braid.angle) - braid.length) / rest, far
+
+
+def _range(muscle: Muscle, pressure: float) -> tuple[Limits | None, str]:
+    try:
+        found = limits(muscle, pressure=pressure)
+    except SpecError as error:  # friction
+        return None, f"{error.allowed}"
+    return (found, "") if found.shortest == found.shortest else (None, found.shortest_cause or "no stable state")
+
+
+def _tension(results: list[Result]) -> tuple[Known, str]:
+    """The largest fibre tension of any stable state, and where."""
+    best, where = -math.inf, ""
+    for result in results:
+        peaks = np.where(stable(result), result.column("fibre_tension").max(axis=1), -math.inf)
+        k = int(np.argmax(peaks))
+        if peaks[k] > best:
+            best = float(peaks[k])
+            where = f"at {1e3 * result.length[k]:.4g} mm and {1e-5 * result.pressure[k]:.3g} bar"
+    return (Known(best), where) if best > -math.inf else (Known(math.nan, "no state is stable"), "")
+
+
+def _diameter(levels: list[Level], muscle: Muscle) -> Known:
+    over = muscle.braid.fibre.diameter or 0.0
+    radii = [float(level.curve.column("r")[stable(level.curve)].max()) for level in levels if stable(level.curve).any()]
+    return Known(2.0 * max(radii) + over) if radii else Known(math.nan, "no state is stable")
+
+
+def _bore(muscle: Muscle) -> float:
+    """Room for air in the muscle as made: that of the chamber, or of the braid where it lies outside or is none."""
+    braid, chamber = muscle.braid, muscle.chamber
+    radius = float(braid.radius)
+    if chamber is not None and chamber.inside:
+        radius = float(chamber.riding_radius(radius) - chamber.wall_thickness)
+    return math.pi * radius**2 * float(braid.length)
+
+
+def _work(level: Level) -> Known:
+    """What a slow stroke at this pressure gives, from where the curve begins to where the muscle is free."""
+    good = stable(level.curve)
+    if level.contraction.reason:
+        return Known(math.nan, level.contraction.reason)
+    if not good.all():
+        return Known(math.nan, "the curve at this pressure has states that are not stable")
+    return Known(float(-np.trapezoid(level.curve.force, level.curve.length)))
+
+
+def _mass(muscle: Muscle, fibre: float | None, rubber: float | None) -> Known:
+    """Fibres and chamber, without fittings."""
+    braid, chamber = muscle.braid, muscle.chamber
+    missing = [] if fibre is not None else ["the density of the fibres"]
+    missing += ["the diameter of the fibres"] if braid.fibre.diameter is None else []
+    missing += ["the density of the chamber"] if chamber is not None and rubber is None else []
+    if missing or fibre is None or braid.fibre.diameter is None:
+        return Known(math.nan, f"not known: {', '.join(missing)}")
+    total = fibre * braid.fibres * braid.length / math.sin(braid.angle) * math.pi * braid.fibre.diameter**2 / 4.0
+    if chamber is not None and rubber is not None:
+        total += rubber * chamber.area(braid.radius) * (chamber.length or braid.length)
+    return Known(float(total))
+
+
+_WHERE = re.compile(r"(?:from )?state \d+ \((?P<place>[^)]*)\)(?: and \d+ more)?(?: on)?: (?P<said>.*)", re.DOTALL)
+
+
+def cautions_once(told_by: Iterable[tuple[str, ...]]) -> Iterator[str]:
+    """Each kind of caution of some results once, from where it first shows."""
+    told = set()
+    for cautions in told_by:
+        for line in cautions:
+            found = _WHERE.fullmatch(line)
+            said = found["said"] if found else line
+            kind = re.sub(r"[^a-z]+", "", said)[:40]
+            if kind not in told:
+                told.add(kind)
+                said = re.sub(r"; in the shape of state \d+ it", "; there it", said)
+                yield f"from {found['place']} on: {said}" if found else said
