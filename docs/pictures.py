@@ -13,6 +13,11 @@ from PIL import Image
 
 import mckibben as mk
 from mckibben.paper.reproduce import PICTURES, reproduce
+from mckibben.sheet.facts import facts
+from mckibben.sheet.pdf import typeset
+from mckibben.sheet.pictures import curves, drawing, svg
+from mckibben.sheet.words import page
+from mckibben.spec import presets
 
 HERE = Path(__file__).parent / "pictures"
 WIDEST = 1000
@@ -51,6 +56,27 @@ def scene() -> None:
         shrink(made, HERE / made.name)
 
 
+def datasheet() -> None:
+    """The first page of a datasheet."""
+    muscle = presets.get("festo-dmsp-20")
+    found = facts(muscle, (1.5e5, 3e5, 4.5e5, 6e5), (1440.0, 1300.0))
+    with tempfile.TemporaryDirectory() as folder:
+        made = Path(folder) / "datasheet.png"
+        made.write_bytes(typeset(page(found, svg(drawing(found)), svg(curves(found)), "2026-11-28"), "png")[0])
+        shrink(made, HERE / made.name)
+
+
+def spread() -> None:
+    """The picture of tolerances in the recipes."""
+    test = mk.Isometric(length="115 mm", pressure="1 bar")
+    vary = {"braid.angle": "0.5 deg", "test.pressure": "5 %", "braid.length": "0.5 mm uniform",
+            "chamber.thickness": "10 %"}  # fmt: skip
+    with tempfile.TemporaryDirectory() as folder:
+        made = Path(folder) / "tolerances.png"
+        mk.plot(mk.tolerances(presets.paper(), test, vary)).savefig(made, dpi=200)
+        shrink(made, HERE / made.name)
+
+
 def main(folder: Path) -> None:
     """Every picture of the paper's figures from a folder into docs/pictures."""
     HERE.mkdir(exist_ok=True)
@@ -63,6 +89,8 @@ def main(folder: Path) -> None:
 if __name__ == "__main__":
     working_range()
     scene()
+    datasheet()
+    spread()
     if len(sys.argv) > 1:
         main(Path(sys.argv[1]))
     else:

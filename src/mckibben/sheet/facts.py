@@ -16,7 +16,7 @@ from mckibben.experiments.run import run
 from mckibben.measure.caution import MuscleWarning
 from mckibben.results.result import Result
 from mckibben.results.verdict import Verdict
-from mckibben.spec import BlockedForce, FreeContraction, Isobaric, Muscle, SpecError, Test
+from mckibben.spec import BlockedForce, FreeContraction, Isobaric, Muscle, Protocol, Step, Test
 from mckibben.spec.plausible import trusted
 
 __all__ = ["ATMOSPHERE", "Facts", "Known", "Level", "cautions_once", "facts"]
@@ -60,7 +60,7 @@ class Facts:
 
     muscle: Muscle
     levels: tuple[Level, ...]  #: the last at the largest pressure
-    free: Result  #: free contractions, a state for each level
+    free: tuple[Result, int]  #: the free muscle at the largest pressure: a state, by its number
     range: Limits | None  #: at the largest pressure
     no_range: str  #: why there is none
     tension: Known  #: largest of a fibre on any curve [N]
@@ -91,9 +91,9 @@ def facts(
     watch(0, total)
     blocked = _run(muscle, BlockedForce(pressure=list(pressures)))
     watch(1, total)
-    free = _run(muscle, FreeContraction(pressure=list(pressures)))
+    free = _freed(muscle, pressures)
     watch(2, total)
-    contractions = [_known(free, k, "contraction") for k in range(len(pressures))]
+    contractions = [_known(*at, "contraction") for at in free]
     first, last = _span(muscle, contractions)
     levels = []
     for k, (pressure, own) in enumerate(zip(pressures, contractions, strict=True)):
@@ -102,20 +102,20 @@ def facts(
         with trusted():  # SI numbers
             way: Any = {"contraction": np.linspace(first, end, POINTS).tolist()}
             curve = _run(muscle, Isobaric(pressure=pressure, **way))
-        levels.append(Level(pressure, _known(blocked, k, "force"), own, _known(free, k, "length"), curve))
+        levels.append(Level(pressure, _known(blocked, k, "force"), own, _known(*free[k], "length"), curve))
         watch(3 + k, total)
     reach, why = _range(muscle, pressures[-1])
     watch(total, total)
-    results = [blocked, free, *(level.curve for level in levels)]
+    results = [blocked, *(result for result, _ in free), *(level.curve for level in levels)]
     tension, where = _tension(results)
     strength = muscle.braid.fibre.breaking_force
     safety = Known(math.nan, "not known: the breaking force of a fibre")
     if strength is not None:
         safety = Known(strength / tension.value) if tension.value > 0.0 else Known(math.nan, "no fibre is pulled")
-    made, volume = _bore(muscle), _known(free, len(pressures) - 1, "air_volume")
+    made, volume = _bore(muscle), _known(*free[-1], "air_volume")
     filled = (pressures[-1] + ATMOSPHERE) / ATMOSPHERE * volume.value - made
     return Facts(
-        muscle, tuple(levels), free, reach, why, tension, where, safety, _diameter(levels, muscle), made, volume,
+        muscle, tuple(levels), free[-1], reach, why, tension, where, safety, _diameter(levels, muscle), made, volume,
         Known(filled, volume.reason), _work(levels[-1]), _mass(muscle, *densities),
         tuple(cautions_once(one.cautions for one in results)),
     )  # fmt: skip
@@ -127,10 +127,26 @@ def _run(muscle: Muscle, test: Test) -> Result:
         return run(muscle, test, tolerance=1e-4)
 
 
+def _freed(muscle: Muscle, pressures: tuple[float, ...]) -> list[tuple[Result, int]]:
+    """The free muscle at each pressure; with friction one that is filled at its length as made, and then let go."""
+    if muscle.friction is None:
+        free = _run(muscle, FreeContraction(pressure=list(pressures)))
+        return [(free, k) for k in range(len(pressures))]
+    with trusted():  # SI numbers
+        ways = [
+            Protocol(steps=[Step(length=muscle.rest_length, pressure=pressure, points=1),
+                            Step(force="to 0 N", pressure="hold", points=2)])
+            for pressure in pressures
+        ]  # fmt: skip
+    return [(_run(muscle, way), -1) for way in ways]
+
+
 def _known(result: Result, k: int, name: str) -> Known:
     """A number of a state that is stable; else why there is none."""
     if result.verdict[k] == Verdict.STABLE:
         return Known(float(result.column(name)[k]))
+    if k < 0:  # the reason is that of the step before, which was not finished
+        k = int(np.argmin(stable(result)))
     reason, verdict = str(result.column("reason")[k]), result.verdict[k]
     return Known(math.nan, reason if reason.startswith(verdict) else f"{verdict}: {reason}")
 
@@ -151,10 +167,9 @@ def _span(muscle: Muscle, contractions: list[Known]) -> tuple[float, float]:
 
 
 def _range(muscle: Muscle, pressure: float) -> tuple[Limits | None, str]:
-    try:
-        found = limits(muscle, pressure=pressure)
-    except SpecError as error:  # friction
-        return None, f"{error.allowed}"
+    if muscle.friction is not None:
+        return None, "with friction the force at a length depends on the path to it"
+    found = limits(muscle, pressure=pressure)
     return (found, "") if found.shortest == found.shortest else (None, found.shortest_cause or "no stable state")
 
 

@@ -71,10 +71,10 @@ def drawing(facts: Facts) -> Figure:
     straight = np.linspace(0.0, H, 61)
     made = Side.of(straight, np.full(61, R), straight, longest)
     sides, words = [made], ["as made"]
-    k = len(facts.levels) - 1
-    if facts.free.verdict[k] == Verdict.STABLE:
-        r, z = 1e3 * facts.free.column("r")[k], 1e3 * facts.free.column("z")[k]
-        sides.append(Side.of(1e3 * facts.free.column("v"), r, z, longest))
+    free, k = facts.free
+    if free.verdict[k] == Verdict.STABLE:
+        r, z = 1e3 * free.column("r")[k], 1e3 * free.column("z")[k]
+        sides.append(Side.of(1e3 * free.column("v"), r, z, longest))
         words.append(f"free at {show(facts.pressure, 'Pa', 3)}")
     gap = GAP * 2.0 * R
     lead = 0.22 * 2.0 * R

@@ -61,6 +61,8 @@ def page(facts: Facts, drawing: str, curves: str, date: str) -> Page:
             if one.reason:
                 reasons.setdefault(f"no {what}: {one.reason}", []).append(show(level.pressure, "Pa", 3))
     said = tuple(f"At {', '.join(where)} {why}." for why, where in reasons.items())
+    if facts.cautions:
+        said = (*said, "Of some states more must be known: see assumptions and limits.")
     about = ", ".join(f"{package} {number}" for package, number in versions().items())
     return Page(
         name, subtitle, tuple(_key(facts, top)), heads, tuple(levels), said, tuple(_parameters(muscle)),
@@ -90,9 +92,9 @@ def _key(facts: Facts, top: str) -> Iterator[tuple[str, str]]:
     if reach is None:
         yield f"Working range at {top}", f"not computed: {facts.no_range}"
     else:
-        longest = show(reach.longest, "m", 4) if reach.longest == reach.longest else "no limit (it gives way)"
+        limit = f"to {show(reach.longest, 'm', 4)}" if reach.longest == reach.longest else "and longer, without a limit"
         push = f"; pushes with at most {show(-reach.force_extremum, 'N', 3)}" if reach.force_extremum < 0.0 else ""
-        yield f"Working range at {top}", f"{show(reach.shortest, 'm', 4)} to {longest}{push}"
+        yield f"Working range at {top}", f"{show(reach.shortest, 'm', 4)} {limit}{push}"
     yield "Length as made", show(float(muscle.rest_length), "m", 4)
     yield "Largest diameter", _or_reason(facts.diameter, f"{_text(facts.diameter, 'm')} on the curves shown")
     before, after = show(facts.bore, "m^3", 4), _text(facts.volume, "m^3")
