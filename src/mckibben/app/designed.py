@@ -30,9 +30,9 @@ def show(design: Designed, seconds: float) -> None:
     states = [(name, row["length"], row["force"], row["pressure"], row["largest_radius"], row["peak_fibre_tension"],
                row["verdict"]) for name, row in design.states.iterrows()]  # fmt: skip
     if states:
-        say(table(head, states, title="What it does", right=range(1, 6)))
+        say(table(head, states, title="What it does", right=range(1, 6), whole=(0, 6)), whole=True)
     if design.front is not None:
-        say(_front(design))
+        say(_front(design), whole=True)
     ended = "" if design.converged else ": the search had not settled"
     say(f"{design.tried} designs tried in {seconds:.1f} s{ended}")
     for note in design.notes:
@@ -57,7 +57,8 @@ def _front(design: Designed) -> Any:
         goals = zip(data["front_goal"].values[k].tolist(), about, strict=True)
         shown = [text_of(value, str(unit), str(display)) for value, (unit, display) in goals]
         rows.append((str(k), *shown, *map(str, said)))
-    return table(("", *design.goal_names, *design.numbers), rows, title=f"Front of {len(rows)} designs", most=FRONT)
+    head, numbers = ("", *design.goal_names, *design.numbers), range(1, 1 + len(about))
+    return table(head, rows, title=f"Front of {len(rows)} designs", most=FRONT, right=numbers)
 
 
 def as_json(design: Designed, seconds: float, files: dict[str, str | None]) -> dict[str, Any]:

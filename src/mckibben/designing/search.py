@@ -26,6 +26,8 @@ ALIKE = 0.01
 """Spread of a generation's goals at which it ends: what is left, the smooth end finds sooner."""
 STUCK = 8
 """What SLSQP ends with where no direction leads on: rounding is all that is left."""
+NEARLY = 2e-3
+"""Violation of a limit that is mended on the way to the best."""
 BAD = 1e3
 """Cost of a design that is not known, over the size of the goal."""
 
@@ -111,47 +113,57 @@ def slopes_at(tried: Judge, x: np.ndarray, goal: int = 0) -> Slopes:
 def smooth_end(tried: Judge, x: np.ndarray, goal: int = 0, rounds: int = ROUNDS) -> bool:
     """From a place (axes) on, with options as they are, to the best one near: sequential quadratic programming.
 
-    Where the limits are not kept, the sum of the violations is made least. Whether the search came to an end by itself.
+    Where the limits are not kept, the sum of the violations is made least first. Whether the search came to an end by
+    itself.
     """
-    which = np.flatnonzero(tried.problem.space.smooth)
-    if not len(which):
+    if not tried.problem.space.smooth.any():
         tried(x[None])
         return True
     begin = slopes_at(tried, x, goal)
-    if not begin.known:
-        return False
-    elastic = bool((begin.over > 0.05).any())
-    size = max(abs(begin.cost), 1e-12)
-    flat = np.zeros(len(which))
+    if begin.known and (begin.over > NEARLY).any():
+        x, ended = _end(tried, x, begin, goal, rounds, True)
+        begin = slopes_at(tried, x, goal)
+        if not begin.known or (begin.over > NEARLY).any():
+            return ended
+    return _end(tried, x, begin, goal, rounds, False)[1] if begin.known else False
 
-    def at(y: np.ndarray) -> Slopes:
+
+def _end(tried: Judge, x: np.ndarray, begin: Slopes, goal: int, rounds: int, mend: bool) -> tuple[np.ndarray, bool]:
+    """Where sequential quadratic programming comes from a place, and whether it ended by itself.
+
+    To `mend`, each limit may be exceeded by a variable of its own, and the sum of these is made least.
+    """
+    which = np.flatnonzero(tried.problem.space.smooth)
+    size, flat = max(abs(begin.cost), 1e-12), np.zeros(len(which))
+
+    def placed(y: np.ndarray) -> np.ndarray:
         full = x.copy()
         full[which] = np.clip(y[: len(which)], 0.0, 1.0)
-        return slopes_at(tried, full, goal)
+        return full
 
     def cost(y: np.ndarray) -> tuple[float, np.ndarray]:
-        if elastic:
+        if mend:
             return float(y[len(which) :].sum()), np.concatenate([flat, np.ones(len(y) - len(which))])
-        seen = at(y)
+        seen = slopes_at(tried, placed(y), goal)
         return (seen.cost / size, seen.of_cost / size) if seen.known else (BAD, flat)
 
     def room(y: np.ndarray) -> np.ndarray:
-        over = at(y).over[:-1]
-        return (y[len(which) :] - over) if elastic else -over
+        over = slopes_at(tried, placed(y), goal).over[:-1]
+        return (y[len(which) :] - over) if mend else -over
 
     def of_room(y: np.ndarray) -> np.ndarray:
-        slopes = np.nan_to_num(at(y).of_over[:-1])
-        return np.hstack([-slopes, np.eye(len(slopes))]) if elastic else -slopes
+        slopes = np.nan_to_num(slopes_at(tried, placed(y), goal).of_over[:-1])
+        return np.hstack([-slopes, np.eye(len(slopes))]) if mend else -slopes
 
-    start: Any = np.concatenate([x[which], np.maximum(begin.over[:-1], 0.0)]) if elastic else x[which]
-    bounds = [(0.0, 1.0)] * len(which) + ([(0.0, LOST)] * (len(begin.over) - 1) if elastic else [])
-    limits = [{"type": "ineq", "fun": room, "jac": of_room}] if len(begin.over) > 1 else []
-    found = minimize(cost, start, jac=True, bounds=bounds, constraints=limits, method="SLSQP",
+    limits = len(begin.over) - 1
+    start: Any = np.concatenate([x[which], np.maximum(begin.over[:-1], 0.0)]) if mend else x[which]
+    bounds = [(0.0, 1.0)] * len(which) + ([(0.0, LOST)] * limits if mend else [])
+    constraints = [{"type": "ineq", "fun": room, "jac": of_room}] if limits else []
+    found = minimize(cost, start, jac=True, bounds=bounds, constraints=constraints, method="SLSQP",
                      options={"maxiter": rounds, "ftol": 1e-7})  # fmt: skip
-    full = x.copy()
-    full[which] = np.clip(found.x[: len(which)], 0.0, 1.0)
+    full = placed(found.x)
     tried(full[None])
-    return bool(found.success) or found.status == STUCK
+    return full, bool(found.success) or found.status == STUCK
 
 
 def neighbours(space: Space, x: np.ndarray) -> np.ndarray:
