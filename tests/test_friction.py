@@ -9,6 +9,7 @@ import pytest
 from numpy.testing import assert_allclose, assert_array_equal
 
 import mckibben as mk
+from mckibben.experiments import rubbing as rubbing_module
 from mckibben.model import friction
 from mckibben.model.parameters import parameters
 from mckibben.model.point import Point
@@ -241,6 +242,19 @@ def test_part_reached() -> None:
     assert found.verdict[1] == "no equilibrium"
     assert np.isnan(found.force[1])
     assert np.isnan(found.data["dissipated"][1])
+
+
+def test_what_was_reached_on_few_unknowns_is_kept(monkeypatch: pytest.MonkeyPatch) -> None:
+    """More of them may lose the way: then the coarser states count, with their error."""
+    fine = mk.run(rubbing(), isobaric(110, 112), tolerance=1e-5)
+    step = rubbing_module.step_to
+    monkeypatch.setattr(
+        rubbing_module, "step_to", lambda problem, *rest: step(problem, *rest) if problem.basis.size < 48 else None
+    )
+    found = mk.run(rubbing(), isobaric(110, 112), tolerance=1e-9)
+    assert found.verdict == ("stable", "stable")
+    assert 1e-9 < float(found.data["error_estimate"].max()) < 1e-2
+    assert_allclose(found.force, fine.force, rtol=1e-3)
 
 
 def test_with_fibres_that_stretch_and_roll() -> None:

@@ -109,20 +109,29 @@ def rubbed(
         if step.gas is not None or step.along == Along.BRANCH:
             what = "a sealed gas" if step.gas is not None else 'along="branch"'
             raise SpecError("friction", allowed=f"does not go with {what}", advice="hold values, or leave friction out")
-    coarse: list[_Leg] | None = None
+    problem = bench.problem(QUICK, b)
+    legs = _walked(bench, problem, steps, watch)
     errors: list[np.ndarray] = []
-    for size in (QUICK, *(size for size in sizes_for("spectral", tolerance) if QUICK < size <= LARGEST)):
-        problem = bench.problem(size, b)
-        legs = _walked(bench, problem, steps, watch)
-        if coarse is not None:
-            errors = [_differences(bench, *pair) for pair in zip(legs, coarse, strict=True)]
-            if all((error <= tolerance).all() for error in errors):
-                break
-        if any(leg.why == INTERRUPTED for leg in legs):
+    for size in (size for size in sizes_for("spectral", tolerance) if QUICK < size <= LARGEST):
+        if _interrupted(legs) or (errors and all((error <= tolerance).all() for error in errors)):
             break
-        coarse = legs
+        finer = bench.problem(size, b)
+        again = _walked(bench, finer, steps, watch)
+        if _reached(again) < _reached(legs) and not _interrupted(again):
+            break  # short waves may lose the way: what was reached is kept
+        errors = [_differences(bench, *pair) for pair in zip(again, legs, strict=True)]
+        problem, legs = finer, again
     errors = errors or [np.full(len(leg.states), np.nan) for leg in legs]
     return [_part(problem, *pair) for pair in zip(legs, errors, strict=True)]
+
+
+def _interrupted(legs: list[_Leg]) -> bool:
+    return any(leg.why == INTERRUPTED for leg in legs)
+
+
+def _reached(legs: list[_Leg]) -> int:
+    """States of all steps together."""
+    return sum(len(leg.states) for leg in legs)
 
 
 def _differences(bench: Bench, leg: _Leg, coarse: _Leg) -> np.ndarray:
