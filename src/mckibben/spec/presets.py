@@ -62,7 +62,7 @@ _SOURCES: dict[str, dict[str, str]] = {
 
 
 def paper() -> Muscle:
-    """The actuator of the paper: geometry as printed, everything else assumed (see `sources("paper")`).
+    """The actuator of the paper: geometry as printed, everything else assumed.
 
     Radius 12.5 mm, length 85 mm, braid angle 37 deg from the parallels (section III of the paper). Assumed are 56 PET
     fibres of 0.25 mm, a chamber of 1 mm with c1 = 8.5 kPa, and clamped ends.
