@@ -2,14 +2,18 @@
 
 from typing import Any
 
+import jax
 import numpy as np
 import pytest
 import xarray as xr
 from numpy.testing import assert_allclose
+from scipy.interpolate import PchipInterpolator
 from scipy.optimize import brentq
 
 import mckibben as mk
-from mckibben.spec.text import to_toml
+from mckibben.model.axial import axial_energy, axial_tension
+from mckibben.model.parameters import parameters
+from mckibben.spec.text import muscle_from_mapping, to_mapping, to_toml
 
 pytestmark = pytest.mark.measure
 
@@ -135,9 +139,86 @@ def test_a_slack_fibre_carries_no_compression() -> None:
     assert float(slack.min()) == 0.0
 
 
+CURVED = mk.AxialLaw(strain=[-0.02, 0.0, 0.01, 0.02, 0.05], force=[-0.5, 0.0, 0.3, 1.2, 6.0])
+"""A yarn that is soft before it is tight."""
+
+
+def by_law(law: mk.AxialLaw) -> mk.Muscle:
+    """The paper's muscle with fibres of a law."""
+    return stretching(None, braid__fibre=mk.Fibre(diameter="0.25 mm", E="3 GPa", nu=0.4, stretch=True, axial_law=law))
+
+
+def test_points_in_line_are_an_axial_stiffness() -> None:
+    held = {"length": "115 mm", "pressure": "1 bar", "tolerance": 1e-9}
+    line = mk.AxialLaw(strain=[-0.01, 0.0, 0.03], force=[-0.01 * PET, 0.0, 0.03 * PET])
+    one, other = (mk.solve(muscle, **held) for muscle in (by_law(line), stretching()))  # type: ignore[arg-type]
+    assert_allclose(one.force, other.force, rtol=1e-11)
+    assert pytest.approx(PET, rel=1e-14) == by_law(line).braid.fibre.EA
+
+
+def test_between_points_the_tension_is_scipys_and_the_energy_its_integral() -> None:
+    p, given = parameters(by_law(CURVED)), PchipInterpolator(CURVED.strain, CURVED.force)
+    inside = np.linspace(-0.02, 0.05, 141)
+    assert_allclose(jax.vmap(lambda e: axial_tension(e, p))(inside), given(inside), rtol=0.0, atol=1e-14)
+    energy = jax.vmap(lambda e: axial_energy(e, p))
+    assert_allclose(energy(inside), [given.integrate(0.0, e) for e in inside], rtol=0.0, atol=1e-16)
+    wide = np.linspace(-0.05, 0.1, 76)  # beyond the points too
+    found = jax.vmap(jax.grad(lambda e: axial_energy(e, p)))(wide)
+    assert_allclose(found, jax.vmap(lambda e: axial_tension(e, p))(wide), rtol=0.0, atol=1e-13)
+    assert (np.diff(found) > 0.0).all()
+
+
+def test_a_curved_law_in_a_muscle() -> None:
+    """Its force lies between those of muscles of its softest and of its steepest piece."""
+    held = {"length": "115 mm", "pressure": "1 bar"}
+    state = mk.solve(by_law(CURVED), **held)  # type: ignore[arg-type]
+    field = state.result.data.isel(step=0)
+    assert state.verdict == "stable"
+    given = PchipInterpolator(CURVED.strain, CURVED.force)
+    assert_allclose(field["fibre_tension"], given(field["fibre_stretch"] - 1.0), rtol=1e-11)
+    soft, stiff = (mk.solve(stretching(EA / PET), **held).force for EA in (25.0, 160.0))  # type: ignore[arg-type]
+    assert soft < state.force < stiff
+
+
+def test_derivative_by_a_point_of_the_law() -> None:
+    test = mk.Isometric(length="115 mm", pressure="1 bar")
+    name = "braid.fibre.axial_law.force[4]"
+    found = mk.sensitivity(by_law(CURVED), test, of="force", by=[name], tolerance=1e-9).absolute.loc[name, "force"]
+
+    def force(last: float) -> float:
+        law = mk.AxialLaw(strain=CURVED.strain, force=[*CURVED.force[:4], last])
+        return mk.solve(by_law(law), length="115 mm", pressure="1 bar", tolerance=1e-9).force
+
+    assert found == pytest.approx((force(6.0 + 1e-3) - force(6.0 - 1e-3)) / 2e-3, rel=1e-6)
+
+
+def test_a_law_in_a_file() -> None:
+    muscle = by_law(CURVED)
+    assert muscle_from_mapping(to_mapping(muscle)) == muscle
+    assert "axial_law" in to_toml(muscle)
+
+
+POINTS: list[tuple[dict[str, Any], str]] = [
+    ({"strain": [0.0, 0.01], "force": [0.0]}, "as many numbers as strain"),
+    ({"strain": [0.0, 0.02, 0.01], "force": [0.0, 1.0, 2.0]}, r"strain\[2\].*above the number before"),
+    ({"strain": [0.0, 0.01, 0.02], "force": [0.0, 2.0, 1.0]}, r"force\[2\].*above the number before"),
+    ({"strain": [0.01, 0.02], "force": ["1 N", "2 N"]}, "strain 0 and force 0"),
+    ({"strain": [0.0, 0.02], "force": [0.1, 0.2]}, "strain 0 and force 0"),
+    ({"strain": [-1.0, 0.0], "force": [-1.0, 0.0]}, "above -1"),
+]
+
+
+@pytest.mark.parametrize(("given", "said"), POINTS)
+def test_points_that_are_no_law(given: dict[str, Any], said: str) -> None:
+    with pytest.raises(mk.SpecError, match=said):
+        mk.AxialLaw(**given)
+
+
 WRONG: list[tuple[dict[str, Any], str]] = [
     ({"axial_stiffness": "147 N"}, "only for fibres that stretch"),
     ({"slack": True}, "only for fibres that stretch"),
+    ({"axial_law": CURVED}, "only for fibres that stretch"),
+    ({"stretch": True, "axial_law": CURVED, "axial_stiffness": "147 N"}, "leave one of them out"),
     ({"stretch": "yes"}, "must be true or false"),
     ({"stretch": True, "axial_stiffness": "-1 N"}, "above 0"),
 ]

@@ -8,8 +8,8 @@ from mckibben.shown import drawn_by
 
 _PUBLIC = {
     "mckibben.spec": (
-        "ArrudaBoyce", "Braid", "Chamber", "CustomLaw", "Ends", "Fibre", "Fittings", "Friction", "Gent", "Joint",
-        "MooneyRivlin", "Muscle", "NeoHookean", "Ogden", "Rubber", "Yeoh", "BlockedForce", "FreeContraction",
+        "ArrudaBoyce", "AxialLaw", "Braid", "Chamber", "CustomLaw", "Ends", "Fibre", "Fittings", "Friction", "Gent",
+        "Joint", "MooneyRivlin", "Muscle", "NeoHookean", "Ogden", "Rubber", "Yeoh", "BlockedForce", "FreeContraction",
         "Isobaric", "Isometric", "Isotonic", "Protocol", "Step", "Stiffening",
         "SpecError",
     ),

@@ -1,8 +1,7 @@
 """Elastic energy of the mesh of Kirchhoff rods, per unit v."""
 
-import jax.numpy as jnp
-
 from mckibben.model.angle import sin
+from mckibben.model.axial import axial_energy, axial_tension
 from mckibben.model.kinematics import fibre_strains, natural_strains
 from mckibben.model.parameters import Number, Parameters
 from mckibben.model.point import Point
@@ -26,11 +25,12 @@ def fibre_densities(at: Point, p: Parameters) -> tuple[Number, Number, Number]:
 
 
 def axial_force(at: Point, p: Parameters) -> Number:
-    """Tension T [N] of a fibre that stretches: EA (lambda - 1); none where a slack one is shortened."""
-    strain = at.stretch - 1.0
-    return p.EA * jnp.where((p.slack > 0.0) & (strain < 0.0), 0.0, strain)
+    """Tension T [N] of a fibre that stretches."""
+    return axial_tension(at.stretch - 1.0, p)
 
 
 def axial_density(at: Point, p: Parameters) -> Number:
-    """Energy of the stretch of all N fibres per unit v [J/m]: N EA/(2 sin(theta0)) (lambda - 1)^2."""
+    """Energy of the stretch of all N fibres per unit v [J/m]: N EA/(2 sin(theta0)) (lambda - 1)^2, or by their law."""
+    if p.axial is not None:
+        return p.N / sin(p.theta0) * axial_energy(at.stretch - 1.0, p)
     return p.N / (2.0 * sin(p.theta0)) * axial_force(at, p) * (at.stretch - 1.0)

@@ -61,17 +61,19 @@ class Parameters(NamedTuple):
     A0: Number  #: volume of the chamber's wall per unit v [m^2]: the area of its cross-section as made (Eq. 26)
     law: Any  #: law of the chamber: its kind is static, its constants are leaves; None for the bare braid
     tube: Tube | None = None  #: a chamber that is not the paper's; None takes the way of the paper, to the last bit
-    EA: Any = None  #: axial stiffness of a fibre [N]; None where the fibres do not stretch
+    EA: Any = None  #: axial stiffness of a fibre [N]; None where the fibres do not stretch, or by a law of their own
     slack: Any = None  #: 1 if a fibre carries no compression, 0 if it does
     compliance: Any = None  #: of both fittings together [m/N]; None where they are rigid
     stiffening: Any = None  #: `spec.Stiffening` of the fibres, None for the paper's quadratic energy
     friction: Any = None  #: `Rubbing` where crossings rub, None where they turn freely
     dead: Any = None  #: length under both fittings that neither shortens nor lengthens [m]; None where there is none
 
+    axial: Any = None  #: `spec.AxialLaw` of fibres that stretch, None where T = EA (lambda - 1)
+
     @property
     def endless(self) -> bool:
         """Whether no length is too long: the fibres stretch, or the fittings give way."""
-        return self.EA is not None or self.compliance is not None
+        return any(part is not None for part in (self.EA, self.axial, self.compliance))
 
     @property
     def rest(self) -> Number:
@@ -105,12 +107,13 @@ def numbers(muscle: Muscle) -> Parameters:
         area if tube is None else area / tube.axial,
         None if chamber is None else _law(chamber.law),
         tube,
-        fibre.EA,
+        fibre.EA if fibre.axial_law is None else None,
         (1.0 if fibre.slack else 0.0) if fibre.stretch else None,
         None if fittings is None else fittings.compliance,
         fibre.stiffening,
         _rubbing(muscle),
         None if fittings is None else fittings.dead_length,
+        fibre.axial_law,
     )  # fmt: skip
 
 

@@ -1,5 +1,6 @@
 """The specification: the muscle and the test that a user describes, immutable and checked, in SI numbers."""
 
+from mckibben.spec.axial import AxialLaw
 from mckibben.spec.chamber import Chamber, Side, Wall
 from mckibben.spec.declared import describe, numbers, walk
 from mckibben.spec.ends import Ends
@@ -35,6 +36,7 @@ __all__ = [
     "AirVolume",
     "Along",
     "ArrudaBoyce",
+    "AxialLaw",
     "BlockedForce",
     "Braid",
     "Chamber",

@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from enum import StrEnum
 
+from mckibben.spec.axial import AxialLaw
 from mckibben.spec.declared import Reads
 from mckibben.spec.errors import SpecError
 from mckibben.spec.fields import choice, part, quantity, spec, switch
@@ -37,7 +38,7 @@ class Fibre:
 
     A round solid fibre has B1 = B2 = E pi d^4/64 and B3 = G pi d^4/32 with G = E/(2 (1 + nu)). The energy that B1, B2,
     B3 multiply is Eq. (20) of the paper. Give all of one way and nothing of the other. The paper's fibres do not
-    stretch; with `stretch` they do, by T = EA (lambda - 1) at stretch lambda (theory page).
+    stretch; with `stretch` they do, by T = EA (lambda - 1) at stretch lambda, or by a law of their own (theory page).
 
     Args:
         diameter: diameter d of the fibre [m]. Beside B1, B2, B3 it may be given too; it then serves only to check that
@@ -52,6 +53,7 @@ class Fibre:
         stretch: True if the fibres stretch; False is the paper's.
         axial_stiffness: EA [N], tension over strain; of a round solid fibre it is E pi d^2/4 where it is not given.
         stiffening: `Stiffening` of bending and twist, or None for the paper's quadratic energy.
+        axial_law: `AxialLaw` of a fibre that stretches, in place of EA, or None.
         slack: True if a fibre that stretches carries no compression, as yarns do.
 
     Raises:
@@ -102,6 +104,9 @@ class Fibre:
     stiffening: Stiffening | None = part(
         Stiffening, meaning="bending and twist that stiffen, none for the paper's", default=None, quiet=True
     )
+    axial_law: AxialLaw | None = part(
+        AxialLaw, meaning="tension over strain of a fibre that stretches, none for EA", default=None, quiet=True
+    )
     slack: Reads[bool] = switch(
         meaning="whether a fibre that stretches carries no compression", source=_STRETCH, default=False
     )
@@ -121,11 +126,15 @@ class Fibre:
         self._check_stretch()
 
     def _check_stretch(self) -> None:
-        """Raise for an axial stiffness or slack without stretch, or stretch without stiffness."""
-        if self.stretch and self.B1 is not None and self.axial_stiffness is None:
+        """Raise for an axial stiffness, law or slack without stretch, two of them at once, or stretch without any."""
+        if self.axial_law is not None and self.axial_stiffness is not None:
+            said = "does not go with an axial law, which says it all"
+            raise SpecError("braid.fibre.axial_stiffness", self.axial_stiffness, said, "leave one of them out")
+        if self.stretch and self.B1 is not None and self.axial_stiffness is None and self.axial_law is None:
             said = "is missing: B1, B2, B3 do not tell how stiff a fibre is along its length"
             raise SpecError("braid.fibre.axial_stiffness", allowed=said, advice="give EA, such as 147 N")
-        idle = [name for name in ("axial_stiffness", "slack") if getattr(self, name)] if not self.stretch else []
+        only = ("axial_stiffness", "axial_law", "slack")
+        idle = [] if self.stretch else [name for name in only if getattr(self, name)]
         if idle:
             said = "means something only for fibres that stretch"
             advice = "set stretch to true, or leave it out"
@@ -149,7 +158,9 @@ class Fibre:
 
     @property
     def EA(self) -> Number | None:  # noqa: N802
-        """Axial stiffness [N], as given or E pi d^2/4; None for a fibre that does not stretch."""
+        """Axial stiffness [N]: as given, E pi d^2/4, or that of a law at rest; None for one that does not stretch."""
+        if self.axial_law is not None:
+            return self.axial_law.stiffness
         if not self.stretch or self.axial_stiffness is not None:
             return self.axial_stiffness
         assert self.diameter is not None
