@@ -10,7 +10,7 @@ from mckibben.units import Number, is_traced
 __all__ = ["AxialLaw"]
 
 _SOURCE = "theory page, stretch of the fibres"
-_LARGEST = (0.0, 1e12)
+_LARGEST = (1e-12, 1e12)
 
 
 @spec("axial_law")
@@ -35,7 +35,9 @@ class AxialLaw:
     86.7
     """
 
-    strain: Reads[tuple[float, ...]] = quantities("1", meaning="strain lambda - 1 of each point", source=_SOURCE)
+    strain: Reads[tuple[float, ...]] = quantities(
+        "1", meaning="strain lambda - 1 of each point", size=(1e-12, 1e3), source=_SOURCE
+    )
     force: Reads[tuple[float, ...]] = quantities(
         "N", meaning="tension of one fibre at each point", size=_LARGEST, source=_SOURCE
     )
