@@ -19,6 +19,7 @@ from distributed import Client, LocalCluster
 
 import mckibben as mk
 from mckibben.sweeps.worker import THREADS
+from mckibben.sweeps.workers import ANY_PORT
 
 pytestmark = pytest.mark.sweeps
 
@@ -35,7 +36,7 @@ def cluster() -> Iterator[LocalCluster]:
     with (
         dask.config.set({"distributed.scheduler.allowed-failures": 0}),
         LocalCluster(
-            n_workers=1, threads_per_worker=1, dashboard_address=None, silence_logs=50, env=ENVIRONMENT
+            n_workers=1, threads_per_worker=1, dashboard_address=ANY_PORT, silence_logs=50, env=ENVIRONMENT
         ) as made,
     ):
         yield made

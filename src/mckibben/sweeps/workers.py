@@ -27,9 +27,11 @@ from mckibben.sweeps.worker import THREADS, work
 if TYPE_CHECKING:
     from distributed import Client, Future
 
-__all__ = ["cores", "spread"]
+__all__ = ["ANY_PORT", "cores", "spread"]
 
 DIED = "its worker process died every time it was solved (it may have run out of memory)"
+ANY_PORT = "127.0.0.1:0"
+"""Where a cluster of our own answers over HTTP: by default all of them want one port, on every network."""
 DEATHS = 1
 """How often the worker of a chunk may die, on a cluster of our own, before the chunk is set apart."""
 
@@ -66,8 +68,8 @@ def _client(workers: int | None, scheduler: str | None) -> Iterator[Client]:
         stack.enter_context(dask.config.set({"distributed.scheduler.allowed-failures": DEATHS}))
         try:
             cluster = LocalCluster(
-                n_workers=workers or cores(), threads_per_worker=1, processes=True, dashboard_address=None,
-                silence_logs=logging.CRITICAL, env=_environment(),
+                n_workers=workers or cores(), threads_per_worker=1, processes=True, dashboard_address=ANY_PORT,
+                scheduler_kwargs={"dashboard": False}, silence_logs=logging.CRITICAL, env=_environment(),
             )  # fmt: skip
         except (OSError, RuntimeError) as error:
             raise SweepError(f"the worker processes could not be started: {_line(error)}") from error
