@@ -14,7 +14,7 @@ from typer.testing import CliRunner
 
 import mckibben as mk
 from mckibben.app.cli import app
-from mckibben.sheet.facts import Facts, Known, cautions_once, facts
+from mckibben.sheet.facts import Fact, Facts, cautions_once, facts
 from mckibben.sheet.html import html
 from mckibben.sheet.pdf import pdf
 from mckibben.sheet.pictures import curves, drawing, svg
@@ -58,6 +58,8 @@ def test_numbers_are_those_of_run(found: Facts, sheet: Page) -> None:
     assert top.force[-1] == pytest.approx(0.0, abs=1e-3)  # the curve ends where the muscle is free
     assert found.tension.value == pytest.approx(float(top.data["fibre_tension"].max()), rel=1e-12)
     assert found.work.value == pytest.approx(-np.trapezoid(top.force, top.length), rel=1e-12)
+    widest = max(float(level.curve.data["r"].max()) for level in found.levels)
+    assert found.diameter.value == pytest.approx(2.0 * (widest + 0.25e-3), rel=1e-12)  # where two fibres cross
     fibres = 1380.0 * 56 * 0.085 / math.sin(math.radians(37.0)) * math.pi * 0.125e-3**2
     rubber = 1100.0 * math.pi * (13.5e-3**2 - 12.5e-3**2) * 0.085
     assert found.mass.value == pytest.approx(fibres + rubber, rel=1e-9)
@@ -111,11 +113,11 @@ def test_names_of_users_are_text(found: Facts, name: str) -> None:
 
 
 def test_what_is_not_there_has_its_reason(found: Facts) -> None:
-    none = Known(math.nan, "no equilibrium: so it is")
+    none = Fact(math.nan, "no equilibrium: so it is")
     last = attrs.evolve(found.levels[1], blocked=none, contraction=none, length=none)
     lost = attrs.evolve(
         found, levels=(found.levels[0], last), range=None, no_range="friction", tension=none, diameter=none,
-        volume=none, air=none, work=none, mass=Known(math.nan, "not known: the density of the fibres"),
+        volume=none, air=none, work=none, mass=Fact(math.nan, "not known: the density of the fibres"),
     )  # fmt: skip
     said = paged(lost)
     text = html(said).decode("utf-8")

@@ -4,6 +4,7 @@ import itertools
 import json
 from pathlib import Path
 
+import attrs
 import numpy as np
 import pytest
 from typer.testing import CliRunner
@@ -184,7 +185,7 @@ def test_an_interrupted_search_keeps_the_best(monkeypatch: pytest.MonkeyPatch) -
     told: list[tuple[int, int]] = []
 
     def begun(tried: Tried, designs: int, seed: int) -> None:
-        tried(scatter(tried.problem, 32, seed))
+        tried(scatter(tried.task, 32, seed))
         raise KeyboardInterrupt
 
     def nothing(tried: Tried, designs: int, seed: int) -> None:
@@ -257,6 +258,21 @@ def test_pictures(best: mk.Design, compromises: mk.Design) -> None:
     goals, free = mk.plot(compromises).axes
     assert goals.get_xlabel().startswith("Force at 5 % contraction and 1 bar (N)")
     assert free.get_ylabel() == "Place in its range (%)"
+
+
+def test_a_stroke_against_a_force_is_drawn_at_that_force(best: mk.Design) -> None:
+    limit = {"limit_kind": "stroke", "limit_at": 0.08, "limit_sign": -1.0, "limit_force": 20.0}
+    data = best.data.assign({name: ("limit", [value]) for name, value in limit.items()})
+    curves = mk.plot(attrs.evolve(best, data=data)).axes[0]
+    (mark,) = [line for line in curves.lines if line.get_label() == "demanded, at least"]
+    assert (mark.get_xdata()[0], mark.get_ydata()[0]) == (8.0, 20.0)
+
+
+def test_a_notebook_shows_a_design(best: mk.Design) -> None:
+    page = best._repr_html_()
+    assert page is not None
+    assert page.count("<img") == 1
+    assert best.table.loc["braid.angle", "value"] in page
 
 
 @pytest.mark.parametrize(

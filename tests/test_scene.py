@@ -16,7 +16,7 @@ import mckibben as mk
 from mckibben.results.result import Result
 from mckibben.spec import SpecError
 from mckibben.view import mesh, render
-from mckibben.view.braid3d import SHARE, Braid, display_diameter
+from mckibben.view.braid3d import SHARE, Body, display_diameter
 from mckibben.view.tube import Tube
 
 pytestmark = pytest.mark.view
@@ -36,8 +36,8 @@ def saved(curve: Result, tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 
 @pytest.fixture(scope="module")
-def braid(curve: Result) -> Braid:
-    return Braid.of(curve, -1)
+def body(curve: Result) -> Body:
+    return Body.of(curve, -1)
 
 
 @pytest.fixture(scope="module")
@@ -61,50 +61,50 @@ def colourful(picture: Image.Image) -> np.ndarray:
     return np.ptp(pixels, axis=2) > 30
 
 
-def test_fibres_keep_their_length_on_the_surface(braid: Braid) -> None:
-    v = np.linspace(0.0, braid.tube.v[-1], 4001)
-    points, _ = braid.centre_line(0.3, -1, v, weave=False)
+def test_fibres_keep_their_length_on_the_surface(body: Body) -> None:
+    v = np.linspace(0.0, body.tube.v[-1], 4001)
+    points, _ = body.centre_line(0.3, -1, v, weave=False)
     length = np.linalg.norm(np.diff(points, axis=0), axis=1).sum()
     assert length == pytest.approx(85e-3 / np.sin(np.deg2rad(37.0)), rel=2e-5)  # 129 points along the muscle
 
 
-def test_fibres_pass_over_and_under_each_other_by_turns_a_diameter_apart(braid: Braid) -> None:
-    v, number = braid.crossings(), braid.fibres // 2
+def test_fibres_pass_over_and_under_each_other_by_turns_a_diameter_apart(body: Body) -> None:
+    v, number = body.crossings(), body.fibres // 2
     step = 2.0 * np.pi / number
-    right, normal = braid.centre_line(0.0, 1, v)
+    right, normal = body.centre_line(0.0, 1, v)
     heights = []
     for k, (at, here, out) in enumerate(zip(v, right, normal, strict=True)):
-        left, _ = braid.centre_line(k * step, -1, np.array([at]))  # the fibre that meets this one at its crossing k
+        left, _ = body.centre_line(k * step, -1, np.array([at]))  # the fibre that meets this one at its crossing k
         between = here - left[0]
-        assert np.linalg.norm(between) == pytest.approx(braid.diameter, rel=1e-9)
+        assert np.linalg.norm(between) == pytest.approx(body.diameter, rel=1e-9)
         heights.append(float(between @ out))
     assert len(heights) > 50
-    np.testing.assert_allclose(heights, braid.diameter * (-1.0) ** np.arange(len(v)), rtol=1e-9)
-    assert braid.diameter == 0.25e-3  # the muscle's own
+    np.testing.assert_allclose(heights, body.diameter * (-1.0) ** np.arange(len(v)), rtol=1e-9)
+    assert body.diameter == 0.25e-3  # the muscle's own
 
 
-def test_bars_are_closed_and_as_thick_as_fibres(braid: Braid) -> None:
-    v = np.linspace(0.0, braid.tube.v[-1], 801)
-    one = mesh.pipe(*braid.centre_line(0.0, 1, v), braid.diameter / 2.0, v, 12)
-    centres, _ = braid.centre_line(0.0, 1, v)
+def test_bars_are_closed_and_as_thick_as_fibres(body: Body) -> None:
+    v = np.linspace(0.0, body.tube.v[-1], 801)
+    one = mesh.pipe(*body.centre_line(0.0, 1, v), body.diameter / 2.0, v, 12)
+    centres, _ = body.centre_line(0.0, 1, v)
     length = np.linalg.norm(np.diff(centres, axis=0), axis=1).sum()
-    section = 6.0 * np.sin(np.pi / 6.0) * (braid.diameter / 2.0) ** 2  # of twelve sides
+    section = 6.0 * np.sin(np.pi / 6.0) * (body.diameter / 2.0) ** 2  # of twelve sides
     assert one.volume() == pytest.approx(section * length, rel=2e-3)
     assert np.linalg.norm(one.normals, axis=1) == pytest.approx(1.0)
 
 
 @pytest.mark.parametrize("cut", [None, 0.7])
 def test_faces_look_the_way_of_their_normals(curve: Result, cut: float | None) -> None:
-    braid = Braid.of(curve, 0, cut)
-    chamber = braid.chamber()
+    body = Body.of(curve, 0, cut)
+    chamber = body.chamber()
     assert chamber is not None
-    for part in (braid.fibre_pipes(), chamber, braid.fittings()):
+    for part in (body.fibre_pipes(), chamber, body.fittings()):
         a, b, c = (part.points[part.faces[:, k]] for k in range(3))
         assert np.all(np.sum(np.cross(b - a, c - a) * part.normals[part.faces].mean(axis=1), axis=1) > 0.0)
 
 
 def test_a_cut_takes_its_sector_out(curve: Result) -> None:
-    whole, cut = Braid.of(curve, -1), Braid.of(curve, -1, 0.0)
+    whole, cut = Body.of(curve, -1), Body.of(curve, -1, 0.0)
     points = cut.fibre_pipes().points
     angle = np.degrees(np.arctan2(points[:, 1], points[:, 0]))
     assert np.abs(angle).min() > 50.0 - 2.0  # half the sector, less the thickness of a fibre
@@ -113,22 +113,22 @@ def test_a_cut_takes_its_sector_out(curve: Result) -> None:
 
 
 def test_the_wall_is_as_thick_as_deformed(curve: Result) -> None:
-    braid = Braid.of(curve, -1)
-    chamber = braid.chamber()
+    body = Body.of(curve, -1)
+    chamber = body.chamber()
     assert chamber is not None
-    middle = np.isclose(chamber.v, braid.tube.v[-1] / 2.0)
+    middle = np.isclose(chamber.v, body.tube.v[-1] / 2.0)
     radii = np.hypot(*chamber.points[middle, :2].T)
-    outside = float(braid.tube.at(braid.tube.v[-1] / 2.0)[0]) - braid.diameter
+    outside = float(body.tube.at(body.tube.v[-1] / 2.0)[0]) - body.diameter
     thickness = 1e-3 * float(curve.data["stretch_thickness"].isel(step=-1, v=64))
     assert radii.max() == pytest.approx(outside, rel=1e-6)
     assert np.ptp(radii) == pytest.approx(thickness, rel=1e-6)
 
 
-def test_solids_hold_the_volume_of_the_state(curve: Result, braid: Braid) -> None:
+def test_solids_hold_the_volume_of_the_state(curve: Result, body: Body) -> None:
     facets = np.sinc(2.0 / mesh.AROUND)  # the share of a circle that its polygon fills
     cylinder = mesh.solid(Tube.cylinder(curve.muscle))
     assert cylinder.volume() == pytest.approx(facets * np.pi * 12.5e-3**2 * 85e-3, rel=1e-9)
-    solid = mesh.solid(braid.tube)
+    solid = mesh.solid(body.tube)
     assert solid.volume() == pytest.approx(facets * curve.volume[-1], rel=5e-4)
     assert edges(solid.faces) == {2}
     assert len(np.unique(solid.points, axis=0)) == len(solid.points)
@@ -144,12 +144,12 @@ def test_fibres_without_a_diameter_get_one_for_display() -> None:
 def test_a_braid_of_very_many_fibres_is_drawn_with_fewer(curve: Result) -> None:
     fine = mk.Fibre(diameter="1 um", E="3 GPa", nu=0.4)
     muscle = mk.presets.paper().replace("braid.fibre", fine).replace("braid.fibres", 20_000)
-    braid = Braid.of(Result(muscle, curve.test, curve.data), 0)
-    assert 100 < braid.fibres < 1000
-    assert braid.fibres % 2 == 0
+    body = Body.of(Result(muscle, curve.test, curve.data), 0)
+    assert 100 < body.fibres < 1000
+    assert body.fibres % 2 == 0
 
 
-def test_stl_is_closed_outside_the_fibres_and_in_mm(curve: Result, braid: Braid, tmp_path: Path) -> None:
+def test_stl_is_closed_outside_the_fibres_and_in_mm(curve: Result, body: Body, tmp_path: Path) -> None:
     content = mk.save_shape(curve, tmp_path / "x.stl", 1).read_bytes()
     assert b"unit: mm" in content[:80]
     (count,) = struct.unpack_from("<I", content, 80)
@@ -168,7 +168,7 @@ def test_stl_is_closed_outside_the_fibres_and_in_mm(curve: Result, braid: Braid,
     assert exact > curve.volume[1] * 1e9
 
 
-def test_glb_holds_parts_in_m_with_colours(curve: Result, braid: Braid, tmp_path: Path) -> None:
+def test_glb_holds_parts_in_m_with_colours(curve: Result, body: Body, tmp_path: Path) -> None:
     content = mk.save_shape(curve, tmp_path / "x.glb").read_bytes()
     magic, version, length, text, kind = struct.unpack_from("<4sIII4s", content)
     assert (magic, version, length, kind) == (b"glTF", 2, len(content), b"JSON")
@@ -176,7 +176,7 @@ def test_glb_holds_parts_in_m_with_colours(curve: Result, braid: Braid, tmp_path
     assert [node["name"] for node in told["nodes"]] == ["fibres", "chamber", "fittings"]
     attributes = told["meshes"][0]["primitives"][0]["attributes"]
     positions, colours = (told["accessors"][attributes[name]] for name in ("POSITION", "COLOR_0"))
-    assert positions["count"] == len(braid.fibre_pipes().points)
+    assert positions["count"] == len(body.fibre_pipes().points)
     assert positions["max"][0] - positions["min"][0] == pytest.approx(0.115, rel=3e-3)  # x along the muscle
     view = told["bufferViews"][colours["bufferView"]]
     start = 28 + text + view["byteOffset"]

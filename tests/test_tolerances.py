@@ -109,6 +109,9 @@ def test_nothing_is_stable() -> None:
     assert np.isnan(seen.table.iloc[:, 2:].to_numpy(float)).all()
     assert "no sample" in mk.plot(seen).axes[0].texts[0].get_text()
     assert "force -" in repr(seen)
+    page = seen._repr_html_()
+    assert page is not None
+    assert page.count("<img") == 1
 
 
 WRONG: list[tuple[dict[str, Any], str]] = [

@@ -217,28 +217,16 @@ def from_si(value: Any, unit: str) -> Any:
     return value if unit == "1" else value / _factor(unit, _si_of(unit))
 
 
+_SI = ("m", "N", "Pa", "rad", "m^3", "N m^2", "J", "J/m", "1/m", "m^2", "N/m", "m/N", "kg", "kg/m^3", "J/kg")
+"""SI units of what the package knows."""
+
+
 @lru_cache(maxsize=128)
 def _si_of(unit: str) -> str:
     """The package's SI unit for the kind of `unit`."""
     if unit in _USUAL:
         return _USUAL[unit][0]
-    for candidate in (
-        "m",
-        "N",
-        "Pa",
-        "rad",
-        "m^3",
-        "N m^2",
-        "J",
-        "J/m",
-        "1/m",
-        "m^2",
-        "N/m",
-        "m/N",
-        "kg",
-        "kg/m^3",
-        "J/kg",
-    ):
+    for candidate in _SI:
         try:
             _factor(unit, candidate)
         except UnitError:

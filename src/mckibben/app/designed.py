@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-import math
 from typing import TYPE_CHECKING, Any
 
 from mckibben.app.console import say, table
+from mckibben.app.outputs import case_of, finite
 
 if TYPE_CHECKING:
     from mckibben.results.design import Designed
@@ -66,35 +66,32 @@ def as_json(design: Designed, seconds: float, files: dict[str, str | None]) -> d
     from mckibben.results.design import STATES
     from mckibben.spec.text import to_mapping
 
-    def plain(value: Any) -> float | None:
-        return float(value) if math.isfinite(value) else None
-
     data = design.data
     said = [str(one) for one in data["said"].values]
     limits = [
-        {"limit": str(name), "value": plain(data["limit_value"].values[k]), "at": float(data["limit_at"].values[k]),
-         "met": bool(data["limit_over"].values[k] <= 1e-5), "reached": bool(data["limit_active"].values[k]),
-         "gain_per_percent": plain(data["limit_gain"].values[k])}
+        {"limit": str(name), "value": finite(data["limit_value"].values[k]), "at": float(data["limit_at"].values[k]),
+         "met": bool(data["limit_met"].values[k]), "reached": bool(data["limit_active"].values[k]),
+         "gain_per_percent": finite(data["limit_gain"].values[k])}
         for k, name in enumerate(data["limit"].values)
     ]  # fmt: skip
     states = [
         {"state": str(name), "verdict": str(data["verdict"].values[k]),
-         **{kind: plain(data[kind].values[k]) for kind in STATES}}
+         **{kind: finite(data[kind].values[k]) for kind in STATES}}
         for k, name in enumerate(data["state"].values)
     ]  # fmt: skip
     front = None
     if design.front is not None:
         rows = zip(data["front_goal"].values.tolist(), data["front_said"].values.tolist(), strict=True)
         front = [
-            dict(zip(design.goal_names, map(plain, goals), strict=True))
+            dict(zip(design.goal_names, map(finite, goals), strict=True))
             | {"free": dict(zip(design.numbers, map(str, texts), strict=True))}
             for goals, texts in rows
         ]
     return {
         "feasible": design.feasible, "converged": design.converged, **files,
-        "free": {name: {"value": plain(value), "said": text}
+        "free": {name: {"value": finite(value), "said": text}
                  for (name, value), text in zip(design.values.items(), said, strict=True)},
-        "goals": {name: plain(value) for name, value in design.goals.items()}, "limits": limits, "states": states,
+        "goals": {name: finite(value) for name, value in design.goals.items()}, "limits": limits, "states": states,
         "front": front, "notes": list(design.notes), "muscle": to_mapping(design.muscle, allow_custom=True),
         "tried": design.tried, "seconds": seconds, "mckibben_version": str(data.attrs["mckibben_version"]),
     }  # fmt: skip
@@ -116,10 +113,7 @@ def described(design: Designed) -> list[tuple[str, str]]:
 
 def muscle_text(design: Designed) -> str:
     """The best muscle as the [muscle] table of a case file, with what it was made for in comments."""
-    from mckibben.spec.text import Case, to_toml
-
     lines = [f"designed by mckibben {design.data.attrs['mckibben_version']}"]
     lines += [f"{name}: {value}" for name, value in _goals(design)]
     lines += [f"{row['limit']}: {row['value']}" for _, row in design.limits.iterrows()]
-    lines.append("add a [test] table for mckibben run")
-    return "".join(f"# {line}\n" for line in lines) + to_toml(Case(design.muscle), allow_custom=True)
+    return case_of(design.muscle, lines)

@@ -12,6 +12,7 @@ import typer
 
 from mckibben.app.console import command, examples, say, table
 from mckibben.app.options import Columns, Held, Units, pairs
+from mckibben.app.outputs import PICTURES, PIXELS
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -32,9 +33,6 @@ PLOT = examples(
 REPRODUCE = examples(
     "mckibben reproduce", "mckibben reproduce -o paper --force", "mckibben reproduce --measured a=lab.csv"
 )
-PICTURES = {".png": "picture", ".pdf": "print", ".svg": "web"}
-PIXELS = 1200
-"""Least width of a picture in pixels, for slides and screens."""
 
 
 class Kind(StrEnum):

@@ -9,6 +9,7 @@ import typer
 
 from mckibben.app.console import COMPLETE, command, examples, say, show_json, table
 from mckibben.app.options import AsJson, Force, Overrides, Quiet
+from mckibben.app.outputs import picture
 
 if TYPE_CHECKING:
     from mckibben.results.effects import Effects
@@ -71,13 +72,7 @@ def _picture(found: Effects, suffix: str) -> bytes:
     if suffix == ".csv":
         text: str = found.table.to_csv(index_label="effect")
         return text.encode("utf-8")
-    import matplotlib
-
-    matplotlib.use("Agg")  # draws to files only, without a window
-    from mckibben.view import style
-    from mckibben.view.effects import bars
-
-    return style.picture(bars(found), suffix[1:])
+    return picture(found, suffix)
 
 
 def _show(found: Effects) -> None:

@@ -3,16 +3,13 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated
+from typing import Annotated
 
 import typer
 
 from mckibben.app.console import COMPLETE, INCOMPLETE, command, examples, say, show_json
-from mckibben.app.draw import PICTURES, PIXELS
 from mckibben.app.options import AsJson, Quiet
-
-if TYPE_CHECKING:
-    from mckibben.fitting.answer import Fit
+from mckibben.app.outputs import Outputs
 
 __all__ = ["EPILOG", "fit"]
 
@@ -22,7 +19,6 @@ EPILOG = examples(
     "mckibben fit fit.toml --muscle fitted.toml --set options.starts=20",
     "mckibben plot fit.nc",
 )
-TOML = {".toml": "a muscle for case files"}
 
 
 @command
@@ -57,15 +53,8 @@ def fit(
     The exit code is 0 also where some numbers are not determined, 2 for wrong input, and 3 if the search had not
     settled: what was found is shown and saved all the same.
     """
-    from mckibben import disk
-    from mckibben.files import store
-
-    if output is not None:
-        store.check_output(output, force)
-    for path, endings in ((picture, PICTURES), (muscle, TOML)):
-        if path is not None:
-            store.suffix_of(path, endings)
-            disk.check_target(path, force)
+    outputs = Outputs(output, picture, muscle, force)
+    outputs.check()
     from mckibben.fitting.fitfile import read_fit
 
     asked = read_fit(file, overrides or ())
@@ -88,31 +77,10 @@ def fit(
     seconds = perf_counter() - begun
     if not (quiet or as_json):  # before saving, in case that fails
         fitted.show(found, seconds, tried)
-    files = _written(found, {"file": output, "picture": picture, "case": muscle}, force)
+    files = outputs.write(found, fitted.muscle_text(found))
     if as_json:
         show_json(fitted.as_json(found, seconds, tried, files))
     elif not quiet:
         for name in filter(None, files.values()):
             say(f"saved to {name}")
     return COMPLETE if found.converged else INCOMPLETE
-
-
-def _written(found: Fit, places: dict[str, Path | None], force: bool) -> dict[str, str | None]:
-    """Write what was asked for; the names of the files."""
-    from mckibben import disk
-    from mckibben.app import fitted
-    from mckibben.files import store
-
-    if (path := places["file"]) is not None:
-        store.save(found, path, force)
-    if (path := places["picture"]) is not None:
-        import matplotlib
-
-        matplotlib.use("Agg")  # draws to files only, without a window
-        from mckibben.view import style
-        from mckibben.view.fit import fitted as drawn
-
-        disk.write(path, style.picture(drawn(found), path.suffix.lower()[1:], PIXELS), force)
-    if (path := places["case"]) is not None:
-        disk.write(path, fitted.muscle_text(found).encode("utf-8"), force)
-    return {what: None if path is None else str(path) for what, path in places.items()}

@@ -6,6 +6,7 @@ import math
 from typing import TYPE_CHECKING, Any
 
 from mckibben.app.console import say, table
+from mckibben.app.outputs import case_of, finite
 
 if TYPE_CHECKING:
     from mckibben.results.fit import Fitted
@@ -65,21 +66,18 @@ def as_json(fit: Fitted, seconds: float, tried: int, files: dict[str, str | None
     from mckibben.results.fit import NUMBERS
     from mckibben.spec.text import to_mapping
 
-    def plain(value: Any) -> float | None:
-        return float(value) if math.isfinite(value) else None
-
     data, numbers = fit.data, {}
     for k, name in enumerate(fit.numbers):
-        known = {kind: plain(data[kind].values[k]) for kind in NUMBERS}
+        known = {kind: finite(data[kind].values[k]) for kind in NUMBERS}
         lost = name in fit.undetermined
         known |= {"value": None, "error": None} if lost else {}
         numbers[name] = {"unit": str(data["unit"].values[k]), "determined": not lost, **known}
     return {
         "converged": fit.converged, **files, "numbers": numbers, "level": float(data.attrs["level"]),
         "intervals": str(data.attrs["intervals"]),
-        "correlation": [[plain(value) for value in row] for row in data["correlation"].values.tolist()],
-        "points": len(fit.residuals), "rms": fit.rms, "of_force": plain(fit.percent), "largest": fit.largest,
-        "explained": plain(fit.explained), "tests": _tests(fit), "notes": list(fit.notes),
+        "correlation": [[finite(value) for value in row] for row in data["correlation"].values.tolist()],
+        "points": len(fit.residuals), "rms": fit.rms, "of_force": finite(fit.percent), "largest": fit.largest,
+        "explained": finite(fit.explained), "tests": _tests(fit), "notes": list(fit.notes),
         "force_error": float(data.attrs["force_error"]), "muscle": to_mapping(fit.muscle, allow_custom=True),
         "source": str(data.attrs["source"]), "tried": tried, "seconds": seconds,
         "mckibben_version": str(data.attrs["mckibben_version"]),
@@ -103,11 +101,8 @@ def described(fit: Fitted) -> list[tuple[str, str]]:
 
 def muscle_text(fit: Fitted) -> str:
     """The fitted muscle as the [muscle] table of a case file, with what it comes from in comments."""
-    from mckibben.spec.text import Case, to_toml
-
     about = fit.data.attrs
     lines = [f"fitted to {about['source']} by mckibben {about['mckibben_version']}: {_goodness(fit)}"]
     lines += [f"{name}: {row['value']}" + (f" +- {row['error']}" if row["error"] else "")
               for name, row in fit.table.iterrows()]  # fmt: skip
-    lines.append("add a [test] table for mckibben run")
-    return "".join(f"# {line}\n" for line in lines) + to_toml(Case(fit.muscle), allow_custom=True)
+    return case_of(fit.muscle, lines)

@@ -8,8 +8,8 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 from mckibben.app.console import COMPLETE, INCOMPLETE, command, examples, say, show_json, table
-from mckibben.app.draw import PIXELS
 from mckibben.app.options import AsJson, Force, Quiet, Tolerance
+from mckibben.app.outputs import PIXELS
 
 if TYPE_CHECKING:
     from xarray import Dataset

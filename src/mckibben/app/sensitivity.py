@@ -9,6 +9,8 @@ import typer
 
 from mckibben.app.console import COMPLETE, INCOMPLETE, command, examples, say, show_json, table
 from mckibben.app.options import AsJson, Force, Overrides, Quiet, Tolerance
+from mckibben.app.outputs import numbers as plain_numbers
+from mckibben.app.outputs import picture
 
 if TYPE_CHECKING:
     from mckibben.results.sensitivity import Sensitivity
@@ -83,17 +85,12 @@ def _save(found: Sensitivity, output: Path, suffix: str, force: bool) -> None:
 
         tables.save_sensitivity(found, output, force)
         return
-    import matplotlib
-
-    matplotlib.use("Agg")  # draws to files only, without a window
-    from mckibben.view import style
-    from mckibben.view.tornado import tornado
-
-    disk.write(output, style.picture(tornado(found), suffix[1:]), force)
+    disk.write(output, picture(found, suffix), force)
 
 
 def _show(found: Sensitivity) -> None:
     """Print the table, the largest influence first, and the notes on it."""
+    from mckibben.results.told import verdict
     from mckibben.units import show
 
     data = found.data
@@ -112,7 +109,7 @@ def _show(found: Sensitivity) -> None:
             unit = str(data["result_unit"].values[k])
             say(f"{name} = {show(value, unit)}: {data['result_meaning'].values[k]}")
     if found.verdict != "stable":
-        say(found.reason if found.reason.startswith(found.verdict) else f"{found.verdict}: {found.reason}")
+        say(verdict(found.verdict, found.reason))
     say(f"{data.attrs['angles']}; -: the number, or the result, is zero" if found.complete else data.attrs["angles"])
 
 
@@ -123,20 +120,17 @@ def _as_json(found: Sensitivity, file: str | None) -> dict[str, Any]:
     data = found.data
     results = [str(name) for name in data["result"].values]
 
-    def plain(values: Any) -> list[float | None]:
-        return [None if value != value else value for value in values.tolist()]
-
     numbers = {}
     for k, name in enumerate(data["number"].values):
         numbers[str(name)] = {
             "value": float(data["number_value"].values[k]),
             "unit": str(data["number_unit"].values[k]),
             "assumed": bool(data["number_assumed"].values[k]),
-            "relative": dict(zip(results, plain(data["relative"].values[k]), strict=True)),
-            "absolute": dict(zip(results, plain(data["absolute"].values[k]), strict=True)),
+            "relative": dict(zip(results, plain_numbers(data["relative"].values[k]), strict=True)),
+            "absolute": dict(zip(results, plain_numbers(data["absolute"].values[k]), strict=True)),
         }
     about = data.attrs
-    values, units = plain(data["result_value"].values), [str(unit) for unit in data["result_unit"].values]
+    values, units = plain_numbers(data["result_value"].values), [str(unit) for unit in data["result_unit"].values]
     return {
         "complete": found.complete,
         "file": file,

@@ -9,6 +9,8 @@ import typer
 
 from mckibben.app.console import COMPLETE, INCOMPLETE, command, examples, say, show_json, table
 from mckibben.app.options import AsJson, Force, Overrides, Quiet, pairs
+from mckibben.app.outputs import numbers as plain_numbers
+from mckibben.app.outputs import picture
 
 if TYPE_CHECKING:
     from mckibben.results.tolerances import Tolerances
@@ -100,13 +102,7 @@ def _save(found: Tolerances, output: Path, suffix: str, force: bool) -> None:
 
         tables.save_tolerances(found, output, force)
         return
-    import matplotlib
-
-    matplotlib.use("Agg")  # draws to files only, without a window
-    from mckibben.view import style
-    from mckibben.view.tolerances import scatter
-
-    disk.write(output, style.picture(scatter(found), suffix[1:]), force)
+    disk.write(output, picture(found, suffix), force)
 
 
 def _show(found: Tolerances) -> None:
@@ -135,9 +131,6 @@ def _as_json(found: Tolerances, file: str | None) -> dict[str, Any]:
     """All but the samples, in SI units, None for NaN."""
     import tomllib
 
-    def plain(values: Any) -> list[float | None]:
-        return [None if value != value else value for value in values.tolist()]
-
     data = found.data
     about, units = data.attrs, data["result_unit"].values.tolist()
     numbers = {}
@@ -146,11 +139,11 @@ def _as_json(found: Tolerances, file: str | None) -> dict[str, Any]:
             kind: data[f"number_{kind}"].values[k].item()
             for kind in ("value", "tolerance", "deviation", "distribution", "unit", "assumed")
         }
-        parts = {kind: dict(zip(found.results, plain(data[kind].values[k]), strict=True))
+        parts = {kind: dict(zip(found.results, plain_numbers(data[kind].values[k]), strict=True))
                  for kind in ("effect", "share", "first", "total")}  # fmt: skip
         numbers[name] = known | parts
-    columns = [plain(data["result_value"].values), plain(found.linear), plain(found.deviation),
-               *map(plain, found.quantiles)]  # fmt: skip
+    columns = [plain_numbers(data["result_value"].values), plain_numbers(found.linear), plain_numbers(found.deviation),
+               *map(plain_numbers, found.quantiles)]  # fmt: skip
     heads = ("value", "linear_deviation", "sampled_deviation", "quantile_5", "quantile_50", "quantile_95")
     results = {
         name: {"unit": unit, **dict(zip(heads, row, strict=True))}

@@ -59,7 +59,7 @@ def view(
     """
     from mckibben import disk
     from mckibben.files import store
-    from mckibben.view import animate, look, render, scene, shapefile, stage
+    from mckibben.view import animate, appearance, render, scene, shapefile, stage
 
     kinds = {".png": "a picture"} | animate.ENDINGS | shapefile.ENDINGS
     ending = None if output is None else store.suffix_of(output, kinds)
@@ -82,8 +82,8 @@ def view(
             raise _error("--state", f"has no meaning for {output}", "an animation shows all states")
         animate.animate(result, output, fps=fps, force=force, **drawing)
         say(f"drawn: {output}")
-        if look.left_out(result):
-            say(look.left_out(result))
+        if appearance.left_out(result):
+            say(appearance.left_out(result))
     else:
         plotter = scene.scene(result, state, off_screen=True, **drawing)
         disk.write(output, stage.png(plotter), force)

@@ -13,7 +13,7 @@ from mckibben.designing.places import By, Place
 from mckibben.designing.prices import Prices
 from mckibben.designing.reading import places_of
 from mckibben.designing.states import states_at
-from mckibben.designing.tried import Limit, Problem, Tried, Worth
+from mckibben.designing.tried import MET, Limit, Task, Tried, Worth
 from mckibben.experiments.run import MuscleWarning, run
 from mckibben.experiments.solve import solve
 from mckibben.measure.report import versions
@@ -74,10 +74,10 @@ class Design(Designed):
         return muscle_from_mapping(tomllib.loads(str(self.data["front_muscle"].values[design])))
 
 
-def _named_states(problem: Problem) -> dict[str, Place]:
+def _named_states(task: Task) -> dict[str, Place]:
     """The states at which designs are judged: their places by what they are, in words; ends of ranges are enough."""
     found: dict[str, Place] = {}
-    for measure in problem.measures:
+    for measure in task.measures:
         places = places_of(measure)
         ranged = hasattr(measure, "between")
         for place in (places[0], places[1 if measure.kind == "work" else -1]) if ranged else places:
@@ -99,9 +99,9 @@ def _said(place: Place) -> str:
     return f"{100.0 * place.at:.4g} % contraction at {at}"
 
 
-def _judged(problem: Problem, muscle: Muscle, tolerance: float) -> tuple[dict[str, Any], list[str]]:
+def _judged(task: Task, muscle: Muscle, tolerance: float) -> tuple[dict[str, Any], list[str]]:
     """Variables of the states and curves of a design, as `run` finds them, and what these say of a real muscle."""
-    named = _named_states(problem)
+    named = _named_states(task)
     seen = states_at(muscle, {}, 1, named.values(), tolerance) if named else None
     where = {name: tuple(float(seen.at(place, kind)[0]) for kind in ("length", "pressure")) if seen else (np.nan,) * 2
              for name, place in named.items()}  # fmt: skip
@@ -148,17 +148,17 @@ def _of_state(found: Result, name: str, row: int) -> float:
 
 
 def answer(
-    problem: Problem, fine: Tried, best: int, prices: Prices, front: tuple[np.ndarray, Worth] | None,
+    task: Task, fine: Tried, best: int, prices: Prices, front: tuple[np.ndarray, Worth] | None,
     about: dict[str, Any], notes: list[str],
 ) -> Design:  # fmt: skip
     """The answer from the best of those tried."""
     import xarray as xr
 
-    space, x = problem.space, fine.x[best]
+    space, x = task.space, fine.x[best]
     worth = fine.some(np.array([best]))
     muscle = space.muscle_at(x)
     values = space.values(x)
-    found, cautions = _judged(problem, muscle, about["tolerance"])
+    found, cautions = _judged(task, muscle, about["tolerance"])
     axes = space.axes
     nan = float("nan")
     variables: dict[str, Any] = {
@@ -170,18 +170,18 @@ def answer(
         "unit": ("number", [axis.unit or "1" for axis in axes]),
         "meaning": ("number", [axis.meaning for axis in axes]),
         "goal_value": ("goal", worth.goals[0]),
-        "goal_kind": ("goal", [goal.measure.kind for goal in problem.goals]),
-        "goal_unit": ("goal", [goal.measure.unit for goal in problem.goals]),
-        "goal_display": ("goal", [goal.measure.display for goal in problem.goals]),
-        **_of_limits(problem.limits, worth, prices), **found,
+        "goal_kind": ("goal", [goal.measure.kind for goal in task.goals]),
+        "goal_unit": ("goal", [goal.measure.unit for goal in task.goals]),
+        "goal_display": ("goal", [goal.measure.display for goal in task.goals]),
+        **_of_limits(task.limits, worth, prices), **found,
     }  # fmt: skip
     coords: dict[str, Any] = {
-        "number": [axis.name for axis in axes], "goal": [goal.said for goal in problem.goals],
-        "limit": ("limit", np.array([limit.said for limit in problem.limits], str)),
+        "number": [axis.name for axis in axes], "goal": [goal.said for goal in task.goals],
+        "limit": ("limit", np.array([limit.said for limit in task.limits], str)),
         **{name: variables.pop(name) for name in ("state", "curve")},
     }  # fmt: skip
     if front is not None:
-        variables |= _of_front(problem, *front)
+        variables |= _of_front(task, *front)
         coords["design"] = np.arange(len(front[0]))
     attributes = about | {
         "muscle": to_toml(muscle, allow_custom=True), "given": to_toml(space.muscle, allow_custom=True),
@@ -204,12 +204,14 @@ def _of_limits(limits: tuple[Limit, ...], worth: Worth, prices: Prices) -> dict[
         "limit_at": ("limit", np.array([limit.at for limit in limits], float)),
         "limit_over": ("limit", worth.over[0, :-1]),
         "limit_sign": ("limit", np.array([limit.sign for limit in limits], float)),
+        "limit_met": ("limit", worth.over[0, :-1] <= MET),
         "limit_active": ("limit", prices.active),
         "limit_gain": ("limit", prices.limits),
         "limit_kind": ("limit", np.array([measure.kind for measure in measures], str)),
         "limit_unit": ("limit", np.array([measure.unit for measure in measures], str)),
         "limit_display": ("limit", np.array([measure.display for measure in measures], str)),
         "limit_pressure": ("limit", np.array([getattr(measure, "pressure", np.nan) for measure in measures], float)),
+        "limit_force": ("limit", np.array([getattr(measure, "force", np.nan) for measure in measures], float)),
         "limit_contraction": ("limit", np.array([_contraction(measure) for measure in measures], float)),
     }  # fmt: skip
 
@@ -221,10 +223,10 @@ def _contraction(measure: Any) -> float:
     return float(measure.contraction or 0.0)
 
 
-def _of_front(problem: Problem, x: np.ndarray, worth: Worth) -> dict[str, Any]:
-    rows = [problem.space.values(row) for row in x]
-    texts = [[axis.text(value) for axis, value in zip(problem.space.axes, row, strict=True)] for row in rows]
-    muscles = [to_toml(problem.space.muscle_at(row), allow_custom=True) for row in x]
+def _of_front(task: Task, x: np.ndarray, worth: Worth) -> dict[str, Any]:
+    rows = [task.space.values(row) for row in x]
+    texts = [[axis.text(value) for axis, value in zip(task.space.axes, row, strict=True)] for row in rows]
+    muscles = [to_toml(task.space.muscle_at(row), allow_custom=True) for row in x]
     return {
         "front_value": (("design", "number"), np.array([[_number(value) for value in row] for row in rows])),
         "front_said": (("design", "number"), np.array(texts, str)),

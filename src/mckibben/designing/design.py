@@ -13,7 +13,7 @@ from mckibben.designing.prices import Prices, prices_of
 from mckibben.designing.reading import check_measure
 from mckibben.designing.search import evolve, neighbours, smooth_end
 from mckibben.designing.space import Space, space_of
-from mckibben.designing.tried import LOST, MET, Problem, Tried, limits_of
+from mckibben.designing.tried import LOST, MET, Task, Tried, limits_of
 from mckibben.experiments.foresee import refuse_friction
 from mckibben.solver.bench import sizes_for
 from mckibben.spec import Muscle, SpecError
@@ -82,19 +82,19 @@ def design(
     ([True], 0.8)
     """
     refuse_friction(muscle, "design")
-    problem = Problem(space_of(muscle, free), _goals(objective), limits_of(_demands(subject_to)))
-    for measure in problem.measures:
-        for own in _kinds(problem.space):
+    task = Task(space_of(muscle, free), _goals(objective), limits_of(_demands(subject_to)))
+    for measure in task.measures:
+        for own in _kinds(task.space):
             check_measure(measure, own)
-    several = len(problem.goals) > 1
+    several = len(task.goals) > 1
     if several:
         check_pymoo()
     count = _whole("designs", designs, FEWEST, MOST) if designs is not None else SEVERAL if several else ONE
     seed = _whole("seed", seed, 0, 2**32 - 1)
     sizes_for("spectral", tolerance)
     tell = _telling(watch, count)
-    coarse = Tried(problem, max(COARSE, tolerance), tell)
-    fine = coarse if tolerance >= COARSE else Tried(problem, tolerance, tell)
+    coarse = Tried(task, max(COARSE, tolerance), tell)
+    fine = coarse if tolerance >= COARSE else Tried(task, tolerance, tell)
     settled, notes = False, []
     try:
         (evolve_front if several else evolve)(coarse, count, seed)
@@ -119,13 +119,13 @@ def design(
     if lost:
         notes.append(f"{lost} of {len(coarse)} designs counted as not fulfilling: no stable state where one was asked "
                      "for, too near full extension for a batch, or values that do not go together")  # fmt: skip
-    empty = Prices(np.full(len(problem.limits), np.nan), np.abs(fine.worth.over[best, :-1]) < 1e-3, ())
+    empty = Prices(np.full(len(task.limits), np.nan), np.abs(fine.worth.over[best, :-1]) < 1e-3, ())
     prices = prices_of(fine, fine.x[best]) if met and not several else empty
     about = {
         "feasible": int(met), "converged": int(settled), "seed": seed, "tolerance": tolerance,
         "tried": len(coarse) + (len(fine) if fine is not coarse else 0),
     }  # fmt: skip
-    return answer(problem, fine, best, prices, front, about, notes)
+    return answer(task, fine, best, prices, front, about, notes)
 
 
 def _telling(watch: Callable[[int, int], None] | None, count: int) -> Callable[[int], None]:
@@ -185,7 +185,7 @@ def _kinds(space: Space) -> Iterator[Muscle]:
 
 def _smooth(coarse: Tried, fine: Tried) -> bool:
     """From the best designs of several sets of options to the best near each; whether the best came to an end."""
-    listed = ~coarse.problem.space.smooth
+    listed = ~coarse.task.space.smooth
     starts: dict[bytes, np.ndarray] = {}
     for k in coarse.ranked():
         starts.setdefault(coarse.x[k][listed].tobytes(), coarse.x[k])
@@ -209,7 +209,7 @@ def _smooth(coarse: Tried, fine: Tried) -> bool:
 
 def _promising(fine: Tried, leading: int) -> list[np.ndarray]:
     """Designs with one number of a list changed that do better, or would but for a little of their limits."""
-    beside = neighbours(fine.problem.space, fine.x[leading])
+    beside = neighbours(fine.task.space, fine.x[leading])
     if not len(beside):
         return []
     worth, cost = fine(beside), fine.worth.costs[leading, 0]
@@ -242,16 +242,16 @@ def _refuse_nothing(tried: Tried) -> None:
 
 def _blocking(fine: Tried, best: int, coarse: Tried) -> list[str]:
     """Which limits cannot be met, and by how much they are missed: together, and each with all others met."""
-    problem = fine.problem
+    task = fine.task
     notes = ["the demands cannot be met together: this is the design that misses them least"]
-    for k, limit in enumerate(problem.limits):
+    for k, limit in enumerate(task.limits):
         over, measure = fine.worth.over[best, k], limit.demand.measure
         if over > MET:
             value = float(fine.worth.limited[best, k])
             missing = measure.text(abs(value - limit.at)) if np.isfinite(value) else "unknown"
             notes.append(f"blocks: {limit.said}; {measure.text(value)} was reached, {missing} "
                          f"{'too much' if limit.sign > 0.0 else 'short'}")  # fmt: skip
-    for k, limit in enumerate(problem.limits):
+    for k, limit in enumerate(task.limits):
         others = np.delete(coarse.worth.over, k, axis=1)
         free = (others <= MET).all(axis=1) & (coarse.worth.over[:, k] < LOST)
         if free.any() and (coarse.worth.over[free, k] > MET).all():

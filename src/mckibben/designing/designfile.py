@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Iterable, Mapping
 from os import PathLike
 from typing import Any
 
 import attrs
 
-from mckibben.files.case import read_mapping
+from mckibben.files.case import dotted, read_mapping
 from mckibben.spec import Muscle
 from mckibben.spec.asked import MEASURES
 from mckibben.spec.errors import SpecError, nearest
@@ -67,16 +67,7 @@ def read_design(path: str | PathLike[str], overrides: Iterable[str] = ()) -> Des
             raise SpecError(f"options.{key}", value, f"must be {said}")
     goals = tuple(_goal(table, field) for table, field in _tables(mapping["objective"], "objective"))
     demands = tuple(_demand(table, field) for table, field in _tables(mapping.get("subject_to", []), "subject_to"))
-    return DesignCase(muscle, dict(_flat(mapping["free"])), goals, demands, options)
-
-
-def _flat(table: Mapping[str, Any], prefix: str = "") -> Iterator[tuple[str, Any]]:
-    """Fields by their dotted names, also where the dots were not quoted and TOML has made tables of them."""
-    for key, value in table.items():
-        if isinstance(value, Mapping) and "points" not in value:
-            yield from _flat(value, f"{prefix}{key}.")
-        else:
-            yield prefix + key, value
+    return DesignCase(muscle, dict(dotted(mapping["free"], "points")), goals, demands, options)
 
 
 def _tables(given: Any, name: str) -> list[tuple[dict[str, Any], str]]:

@@ -38,31 +38,29 @@ def evolve_front(tried: Tried, designs: int, seed: int) -> None:
     from pymoo.core.problem import Problem as Asked
     from pymoo.optimize import minimize
 
-    problem = tried.problem
-    low, high = problem.space.bounds.T
+    task = tried.task
+    low, high = task.space.bounds.T
 
     class Batches(Asked):  # type: ignore[misc]  # pymoo ships no types
         """Many designs at a time, as pymoo asks for them."""
 
         def __init__(self) -> None:
-            super().__init__(
-                n_var=len(low), n_obj=len(problem.goals), n_ieq_constr=len(problem.limits) + 1, xl=low, xu=high
-            )
+            super().__init__(n_var=len(low), n_obj=len(task.goals), n_ieq_constr=len(task.limits) + 1, xl=low, xu=high)
 
         def _evaluate(self, x: np.ndarray, out: dict[str, Any], *_: Any, **__: Any) -> None:
             worth = tried(x)
             out["F"], out["G"] = np.nan_to_num(worth.costs, nan=1e30), worth.over
 
     size = min(CROWD, designs)
-    first = scatter(problem, size, seed)
+    first = scatter(task, size, seed)
     minimize(Batches(), NSGA2(pop_size=size, sampling=first), ("n_gen", max(designs // size, 1)), seed=seed)
 
 
-class Held:
+class NoWorse:
     """Designs as they are judged with all goals but the first held at least as good as they were."""
 
     def __init__(self, tried: Tried, costs: np.ndarray) -> None:
-        self.problem, self._tried, self._costs = tried.problem, tried, costs
+        self.task, self._tried, self._costs = tried.task, tried, costs
 
     def __call__(self, x: np.ndarray, /) -> Worth:
         """What designs at places (d, axes) are worth."""
@@ -79,7 +77,7 @@ def smooth_front(coarse: Tried, fine: Tried) -> None:
     Of two goals the second is held at values evenly spread between its ends.
     """
     own = front_of(coarse)
-    for goal in range(len(coarse.problem.goals) if len(own) else 0):
+    for goal in range(len(coarse.task.goals) if len(own) else 0):
         smooth_end(fine, coarse.x[own[np.argmin(coarse.worth.costs[own, goal])]], goal)
     fine(coarse.x[own])
     own = front_of(fine)
@@ -94,16 +92,16 @@ def smooth_front(coarse: Tried, fine: Tried) -> None:
         some = np.unique(np.linspace(0, len(own) - 1, ENDS).astype(int))
         starts, wanted = fine.x[own[some]], costs[some, 1:]
     for x, held in zip(starts, wanted, strict=True):
-        smooth_end(Held(fine, held), x, rounds=ROUNDS)
+        smooth_end(NoWorse(fine, held), x, rounds=ROUNDS)
 
 
 def _between(fine: Tried, own: np.ndarray, cost: np.ndarray, wanted: np.ndarray) -> np.ndarray:
     """Places (wanted, axes) between designs of a front with rising costs; words and parts are the nearest one's."""
     x = fine.x[own]
     nearest = x[np.abs(cost[None] - wanted[:, None]).argmin(axis=1)]
-    numeric = np.array([axis.numeric for axis in fine.problem.space.axes])
+    numeric = np.array([axis.numeric for axis in fine.task.space.axes])
     between = np.stack([np.interp(wanted, cost, column) for column in x.T], axis=1)
-    return fine.problem.space.settled(np.where(numeric, between, nearest))
+    return fine.task.space.settled(np.where(numeric, between, nearest))
 
 
 def front_of(tried: Tried) -> np.ndarray:

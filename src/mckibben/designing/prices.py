@@ -9,7 +9,7 @@ import numpy as np
 from scipy.optimize import nnls
 
 from mckibben.designing.search import slopes_at
-from mckibben.designing.tried import Problem, Tried
+from mckibben.designing.tried import Task, Tried
 from mckibben.spec.wishes import Goal, Measure, text_of
 
 __all__ = ["Prices", "prices_of"]
@@ -35,33 +35,33 @@ class Prices:
 
 def prices_of(tried: Tried, x: np.ndarray) -> Prices:
     """Prices at the best design (axes), with options as they are."""
-    problem = tried.problem
-    axes = [axis for axis in problem.space.axes if axis.smooth]
+    task = tried.task
+    axes = [axis for axis in task.space.axes if axis.smooth]
     seen = slopes_at(tried, x)
     active = np.abs(seen.over[:-1]) < ACTIVE
     unknown = np.where(active, np.nan, 0.0)
     if not axes or not seen.known:
-        said = ("limits the design: " + problem.limits[k].said for k in np.flatnonzero(active))
+        said = ("limits the design: " + task.limits[k].said for k in np.flatnonzero(active))
         return Prices(unknown, active, tuple(said))
-    own = x[problem.space.smooth]
+    own = x[task.space.smooth]
     low, high = own < AT, own > 1.0 - AT
     bounds = np.concatenate([-np.eye(len(own))[low], np.eye(len(own))[high]])
     rows = np.concatenate([seen.of_over[:-1][active], bounds])
     size = float(np.linalg.norm(seen.of_cost))
     if size < 1e-9 * max(abs(seen.cost), 1e-12):
-        said = ("at its limit: " + problem.limits[k].said for k in np.flatnonzero(active))
-        return Prices(np.where(active, 0.0, 0.0), active, tuple(said))
+        said = ("at its limit: " + task.limits[k].said for k in np.flatnonzero(active))
+        return Prices(np.zeros(len(active)), active, tuple(said))
     multipliers, left = nnls(rows.T, -seen.of_cost) if len(rows) else (np.zeros(0), size)
     notes: list[str] = []
     if left > SETTLED * size:
         notes.append("the best design is no smooth optimum of its limits (options, or an edge of what can be computed "
                      "or of a largest value, hold it): what more room would give is not told")  # fmt: skip
-        notes += ["at its limit: " + problem.limits[k].said for k in np.flatnonzero(active)]
+        notes += ["at its limit: " + task.limits[k].said for k in np.flatnonzero(active)]
         return Prices(unknown, active, tuple(notes))
     gains = unknown.copy()
     gains[active] = CHANGE * multipliers[: int(active.sum())]
-    goal = problem.goals[0]
-    notes += [_of_limit(problem, k, float(gains[k])) for k in np.flatnonzero(active).tolist()]
+    goal = task.goals[0]
+    notes += [_of_limit(task, k, float(gains[k])) for k in np.flatnonzero(active).tolist()]
     at_bound = [k for k in np.flatnonzero(low).tolist()] + [k for k in np.flatnonzero(high).tolist()]
     for k, price in zip(at_bound, multipliers[int(active.sum()) :].tolist(), strict=True):
         number, upper = axes[k].number, bool(high[k])
@@ -77,8 +77,8 @@ def prices_of(tried: Tried, x: np.ndarray) -> Prices:
     return Prices(gains, active, tuple(notes))
 
 
-def _of_limit(problem: Problem, k: int, gain: float) -> str:
-    limit, goal = problem.limits[k], problem.goals[0]
+def _of_limit(task: Task, k: int, gain: float) -> str:
+    limit, goal = task.limits[k], task.goals[0]
     amount = limit.demand.measure.text(CHANGE * abs(limit.at)) if limit.at else "0.01"
     more = "more" if limit.sign > 0.0 else "less"
     return f"at its limit: {limit.said}; 1 % {more} ({amount}) would {_gives(goal, gain)}"
@@ -94,10 +94,10 @@ def _gives(goal: Goal, gain: float) -> str:
 def _of_pressure(tried: Tried, x: np.ndarray, gains: np.ndarray) -> float | None:
     """Gain in the goal by a hundredth more of every pressure, the design being adapted; None without
     pressures, or where nothing comes of it."""
-    problem = tried.problem
+    task = tried.task
     worths = []
     for share in (1.0 - 0.5 * CHANGE, 1.0 + 0.5 * CHANGE):
-        pressed = _pressed(problem, share)
+        pressed = _pressed(task, share)
         if pressed is None:
             return None
         worths.append(Tried(pressed, tried.tolerance, lambda count: None)(x[None]))
@@ -110,21 +110,21 @@ def _of_pressure(tried: Tried, x: np.ndarray, gains: np.ndarray) -> float | None
     return gain if np.isfinite(gain) and abs(gain) > 1e-6 * size else None
 
 
-def _pressed(problem: Problem, share: float) -> Problem | None:
+def _pressed(task: Task, share: float) -> Task | None:
     """The same with every pressure times a share; None where there is none."""
 
     def scaled(measure: Measure) -> Any:
         own: Any = measure
         return attrs.evolve(own, pressure=own.pressure * share) if hasattr(own, "pressure") else own
 
-    if not any(hasattr(measure, "pressure") for measure in problem.measures):
+    if not any(hasattr(measure, "pressure") for measure in task.measures):
         return None
     from mckibben.spec.plausible import trusted
 
     with trusted():
-        goals = tuple(attrs.evolve(goal, measure=scaled(goal.measure)) for goal in problem.goals)
+        goals = tuple(attrs.evolve(goal, measure=scaled(goal.measure)) for goal in task.goals)
         limits = tuple(
             attrs.evolve(limit, demand=attrs.evolve(limit.demand, measure=scaled(limit.demand.measure)))
-            for limit in problem.limits
+            for limit in task.limits
         )
-    return attrs.evolve(problem, goals=goals, limits=limits)
+    return attrs.evolve(task, goals=goals, limits=limits)

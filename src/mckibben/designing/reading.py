@@ -8,7 +8,8 @@ from typing import Any
 import numpy as np
 
 from mckibben.designing.places import By, Place
-from mckibben.designing.states import Seen
+from mckibben.designing.states import AtPlaces
+from mckibben.measure.mass import mass_of, over_fibres
 from mckibben.model.jamming import across
 from mckibben.model.parameters import numbers
 from mckibben.spec import Muscle, SpecError
@@ -70,61 +71,60 @@ def places_of(measure: Measure) -> list[Place]:
     return [] if isinstance(measure, Mass) else _within(measure, EXTREMES)
 
 
-def value_of(measure: Measure, seen: Seen) -> np.ndarray:
+def value_of(measure: Measure, seen: AtPlaces) -> np.ndarray:
     """The measure of every design; NaN where one of its states is not there."""
     with np.errstate(invalid="ignore", divide="ignore"):
         return _VALUES[type(measure)](measure, seen, places_of(measure))
 
 
-def _force(measure: ForceAt, seen: Seen, places: list[Place]) -> np.ndarray:
+def _force(measure: ForceAt, seen: AtPlaces, places: list[Place]) -> np.ndarray:
     return seen.at(places[0])
 
 
-def _stroke(measure: Stroke, seen: Seen, places: list[Place]) -> np.ndarray:
+def _stroke(measure: Stroke, seen: AtPlaces, places: list[Place]) -> np.ndarray:
     return seen.at(places[0], "contraction")
 
 
-def _pressure_for(measure: PressureFor, seen: Seen, places: list[Place]) -> np.ndarray:
+def _pressure_for(measure: PressureFor, seen: AtPlaces, places: list[Place]) -> np.ndarray:
     return seen.at(places[0], "pressure")
 
 
-def _work(measure: Work, seen: Seen, places: list[Place]) -> np.ndarray:
+def _work(measure: Work, seen: AtPlaces, places: list[Place]) -> np.ndarray:
     ends, inner = seen.over(places[:2], "length"), seen.over(places[2:])
     work = (ends[:, 0] - ends[:, 1]) * (inner @ _gauss()[1])
     braid = seen.muscle.braid
     if measure.per == "volume":
         return work / seen.all(np.pi * np.asarray(braid.radius) ** 2 * np.asarray(braid.length))
     if measure.per == "mass":
-        return work / seen.all(_mass_of(seen.muscle, measure.fibre_density, measure.chamber_density))
+        return work / seen.all(mass_of(seen.muscle, measure.fibre_density, measure.chamber_density))
     return work
 
 
-def _variation(measure: ForceVariation, seen: Seen, places: list[Place]) -> np.ndarray:
+def _variation(measure: ForceVariation, seen: AtPlaces, places: list[Place]) -> np.ndarray:
     forces = seen.over(places)
     mean = forces.mean(axis=1)
     return np.where(mean > 0.0, (forces.max(axis=1) - forces.min(axis=1)) / mean, np.nan)
 
 
-def _miss(measure: CurveMiss, seen: Seen, places: list[Place]) -> np.ndarray:
+def _miss(measure: CurveMiss, seen: AtPlaces, places: list[Place]) -> np.ndarray:
     off = seen.over(places) - np.array(measure.forces)
     return np.asarray(np.sqrt(np.mean(off**2, axis=1)))
 
 
-def _diameter(measure: Diameter, seen: Seen, places: list[Place]) -> np.ndarray:
-    fibre = seen.muscle.braid.fibre.diameter
-    return 2.0 * (seen.over(places, "largest_radius").max(axis=1) + seen.all(0.0 if fibre is None else fibre))
+def _diameter(measure: Diameter, seen: AtPlaces, places: list[Place]) -> np.ndarray:
+    return np.asarray(over_fibres(seen.over(places, "largest_radius").max(axis=1), seen.muscle))
 
 
-def _tension(measure: Any, seen: Seen, places: list[Place]) -> np.ndarray:
+def _tension(measure: Any, seen: AtPlaces, places: list[Place]) -> np.ndarray:
     return seen.over(places, "peak_fibre_tension").max(axis=1)
 
 
-def _safety(measure: FibreSafety, seen: Seen, places: list[Place]) -> np.ndarray:
+def _safety(measure: FibreSafety, seen: AtPlaces, places: list[Place]) -> np.ndarray:
     strength, tension = seen.all(seen.muscle.braid.fibre.breaking_force), _tension(measure, seen, places)
     return np.where(tension > 0.0, strength / tension, np.where(tension <= 0.0, np.inf, np.nan))
 
 
-def _room(measure: JammingMargin, seen: Seen, places: list[Place]) -> np.ndarray:
+def _room(measure: JammingMargin, seen: AtPlaces, places: list[Place]) -> np.ndarray:
     """Of inextensible fibres r/R0 = cos(theta)/cos(theta0), wherever along the muscle."""
     braid = seen.muscle.braid
     R0, theta0 = seen.all(braid.radius), seen.all(braid.angle)
@@ -137,27 +137,16 @@ def _room(measure: JammingMargin, seen: Seen, places: list[Place]) -> np.ndarray
     return np.asarray(np.where(np.isfinite(r), np.minimum(room, made), np.nan))
 
 
-def _air(measure: AirVolume, seen: Seen, places: list[Place]) -> np.ndarray:
+def _air(measure: AirVolume, seen: AtPlaces, places: list[Place]) -> np.ndarray:
     tube = numbers(seen.muscle).tube
     return seen.at(places[0], "volume") - seen.all(0.0 if tube is None else tube.rubber)
 
 
-def _mass_of(muscle: Muscle, fibre_density: float | None, chamber_density: float | None) -> Any:
-    """Mass [kg] of braid and chamber."""
-    braid, chamber = muscle.braid, muscle.chamber
-    section = 0.25 * np.pi * np.asarray(braid.fibre.diameter) ** 2
-    mass = fibre_density * np.asarray(braid.fibres) * section * np.asarray(braid.length) / np.sin(braid.angle)
-    if chamber is not None:
-        length = braid.length if chamber.length is None else chamber.length
-        mass = mass + chamber_density * np.asarray(chamber.area(braid.radius)) * np.asarray(length)
-    return mass
+def _mass(measure: Mass, seen: AtPlaces, places: list[Place]) -> np.ndarray:
+    return seen.all(mass_of(seen.muscle, measure.fibre_density, measure.chamber_density))
 
 
-def _mass(measure: Mass, seen: Seen, places: list[Place]) -> np.ndarray:
-    return seen.all(_mass_of(seen.muscle, measure.fibre_density, measure.chamber_density))
-
-
-_VALUES: dict[type, Callable[[Any, Seen, list[Place]], np.ndarray]] = {
+_VALUES: dict[type, Callable[[Any, AtPlaces, list[Place]], np.ndarray]] = {
     ForceAt: _force, Stroke: _stroke, PressureFor: _pressure_for, Work: _work, ForceVariation: _variation,
     CurveMiss: _miss, Diameter: _diameter, FibreTension: _tension, FibreSafety: _safety, JammingMargin: _room,
     AirVolume: _air, Mass: _mass,

@@ -10,7 +10,7 @@ from scipy.optimize import NonlinearConstraint, differential_evolution, minimize
 from scipy.stats import qmc
 
 from mckibben.designing.space import Space
-from mckibben.designing.tried import LOST, Problem, Tried, Worth
+from mckibben.designing.tried import LOST, Task, Tried, Worth
 
 __all__ = ["Judge", "Slopes", "evolve", "neighbours", "scatter", "slopes_at", "smooth_end"]
 
@@ -32,20 +32,20 @@ BAD = 1e3
 """Cost of a design that is not known, over the size of the goal."""
 
 
-def scatter(problem: Problem, count: int, seed: int) -> np.ndarray:
+def scatter(task: Task, count: int, seed: int) -> np.ndarray:
     """Quasi-random places (count, axes), even over every range and list."""
-    low, high = problem.space.bounds.T
+    low, high = task.space.bounds.T
     sampler = qmc.Sobol(len(low), seed=seed)
     points = sampler.random_base2(int(np.ceil(np.log2(max(count, 2)))))[:count]
-    smooth = problem.space.smooth
+    smooth = task.space.smooth
     # an option gets as much room as any other, those at the ends too
     return np.where(smooth, low + points * (high - low), np.floor(points * (high - low + 1.0)).clip(0.0, high))
 
 
 def evolve(tried: Tried, designs: int, seed: int) -> None:
     """Try so many designs, each generation nearer to the best."""
-    problem = tried.problem
-    first = scatter(problem, min(FIRST * CROWD, max(designs // 2, CROWD)), seed)
+    task = tried.task
+    first = scatter(task, min(FIRST * CROWD, max(designs // 2, CROWD)), seed)
     for at in range(0, len(first), 2 * CROWD):  # in parts, so that there is something to keep soon
         tried(first[at : at + 2 * CROWD])
     generations = (designs - len(tried)) // CROWD
@@ -61,10 +61,10 @@ def evolve(tried: Tried, designs: int, seed: int) -> None:
     def over(x: np.ndarray) -> np.ndarray:
         return tried(np.atleast_2d(x.T)).over.T
 
-    low, high = problem.space.bounds.T
+    low, high = task.space.bounds.T
     differential_evolution(
         cost, list(zip(low, np.maximum(high, low), strict=True)), maxiter=generations, init=start, tol=ALIKE, seed=seed,
-        polish=False, updating="deferred", vectorized=True, integrality=~problem.space.smooth, mutation=(0.4, 0.9),
+        polish=False, updating="deferred", vectorized=True, integrality=~task.space.smooth, mutation=(0.4, 0.9),
         recombination=0.9, constraints=NonlinearConstraint(over, -np.inf, 0.0),
     )  # fmt: skip
 
@@ -73,7 +73,7 @@ def evolve(tried: Tried, designs: int, seed: int) -> None:
 class Judge(Protocol):
     """What says of designs what they are worth."""
 
-    problem: Problem
+    task: Task
 
     def __call__(self, x: np.ndarray, /) -> Worth: ...
 
@@ -96,7 +96,7 @@ class Slopes:
 
 def slopes_at(tried: Judge, x: np.ndarray, goal: int = 0) -> Slopes:
     """Central differences at a place (axes) by its smooth numbers; one-sided at a bound. All in one batch."""
-    which = np.flatnonzero(tried.problem.space.smooth)
+    which = np.flatnonzero(tried.task.space.smooth)
     rows = np.repeat(x[None], 1 + 2 * len(which), axis=0)
     for k, axis in enumerate(which):
         rows[1 + 2 * k, axis] = min(x[axis] + STEP, 1.0)
@@ -116,7 +116,7 @@ def smooth_end(tried: Judge, x: np.ndarray, goal: int = 0, rounds: int = ROUNDS)
     Where the limits are not kept, the sum of the violations is made least first. Whether the search came to an end by
     itself.
     """
-    if not tried.problem.space.smooth.any():
+    if not tried.task.space.smooth.any():
         tried(x[None])
         return True
     begin = slopes_at(tried, x, goal)
@@ -133,7 +133,7 @@ def _end(tried: Judge, x: np.ndarray, begin: Slopes, goal: int, rounds: int, men
 
     To `mend`, each limit may be exceeded by a variable of its own, and the sum of these is made least.
     """
-    which = np.flatnonzero(tried.problem.space.smooth)
+    which = np.flatnonzero(tried.task.space.smooth)
     size, flat = max(abs(begin.cost), 1e-12), np.zeros(len(which))
 
     def placed(y: np.ndarray) -> np.ndarray:

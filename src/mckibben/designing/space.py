@@ -175,7 +175,7 @@ def _axis(muscle: Muscle, name: str, given: Any) -> Axis:
         declared = _declared(muscle, name)
         if declared.kind == "count":
             return _listed(muscle, name, _whole(name, given))
-        if declared.kind not in ("quantity",):
+        if declared.kind != "quantity":
             raise SpecError(f"free.{name}", given, "is no number: it needs a list to choose from")
     (number,) = free_numbers(muscle, {name: given}, {})
     return Axis(name, number, (), number.unit, number.display, number.meaning)

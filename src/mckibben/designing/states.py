@@ -19,7 +19,7 @@ from mckibben.spec import Isobaric, Isometric, Isotonic, Muscle, Test
 from mckibben.sweeps.batches import Solved, solve_together
 from mckibben.sweeps.groups import grouped, with_arrays
 
-__all__ = ["KEPT", "Seen", "states_at"]
+__all__ = ["KEPT", "AtPlaces", "states_at"]
 
 LEFT_OUT = 0.25
 """Share of designs that may be lost: the second way of batches takes long, and where few need it others are as good."""
@@ -34,7 +34,7 @@ Columns = dict[str, np.ndarray]
 
 
 @attrs.frozen
-class Seen:
+class AtPlaces:
     """Designs of one kind, and what their states are: every number an array (designs), NaN where there is no state."""
 
     muscle: Muscle  #: what varies is an array
@@ -55,7 +55,9 @@ class Seen:
 
 
 @one_thread()
-def states_at(muscle: Muscle, values: Columns, count: int, places: Iterable[Place], tolerance: float) -> Seen | None:
+def states_at(
+    muscle: Muscle, values: Columns, count: int, places: Iterable[Place], tolerance: float
+) -> AtPlaces | None:
     """What `count` designs are at the places; None where the fields cannot vary in a batch.
 
     Args:
@@ -69,7 +71,7 @@ def states_at(muscle: Muscle, values: Columns, count: int, places: Iterable[Plac
     if several is None:
         return None
     wanted = dict.fromkeys(places)
-    seen = Seen(several, count, {})
+    seen = AtPlaces(several, count, {})
     free = {Place(place.pressure, By.FORCE, 0.0): None for place in wanted if place.by == By.SHARE}
     wanted |= free
     for force in dict.fromkeys(place.at for place in wanted if place.by == By.FORCE):
@@ -86,7 +88,7 @@ def states_at(muscle: Muscle, values: Columns, count: int, places: Iterable[Plac
     return seen
 
 
-def _length(seen: Seen, place: Place) -> np.ndarray:
+def _length(seen: AtPlaces, place: Place) -> np.ndarray:
     """The length [m] of every design at a place."""
     rest = seen.all(seen.muscle.rest_length)
     if place.by == By.LENGTH:
@@ -98,7 +100,7 @@ def _length(seen: Seen, place: Place) -> np.ndarray:
 
 
 def _over_length(
-    seen: Seen, muscle: Muscle, values: Columns, lengths: dict[Place, np.ndarray], tolerance: float
+    seen: AtPlaces, muscle: Muscle, values: Columns, lengths: dict[Place, np.ndarray], tolerance: float
 ) -> None:
     """States of one pressure each, from the longest to the shortest of every design."""
     for pressure in dict.fromkeys(place.pressure for place in lengths if place.pull is None):
@@ -115,7 +117,9 @@ def _over_length(
         _keep(seen, own, found, np.argsort(order, axis=1))
 
 
-def _pulling(seen: Seen, muscle: Muscle, values: Columns, lengths: dict[Place, np.ndarray], tolerance: float) -> None:
+def _pulling(
+    seen: AtPlaces, muscle: Muscle, values: Columns, lengths: dict[Place, np.ndarray], tolerance: float
+) -> None:
     """States of a length at which a force is pulled: the pressure is sought by secants, since they are nearly in line.
 
     The two states to begin with are at the highest pressure and at half of it, because a soft muscle may have none
@@ -158,7 +162,7 @@ def _put(into: Columns, some: np.ndarray, found: Columns) -> Columns:
     return into
 
 
-def _keep(seen: Seen, places: list[Place], found: Columns, order: np.ndarray | None) -> None:
+def _keep(seen: AtPlaces, places: list[Place], found: Columns, order: np.ndarray | None) -> None:
     """Put what was found (designs, states) at its places; `order` says which state of each design is at which."""
     for k, place in enumerate(places):
         column = np.full(seen.count, k) if order is None else order[:, k]

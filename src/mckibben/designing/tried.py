@@ -13,7 +13,7 @@ from mckibben.designing.space import Space
 from mckibben.designing.states import states_at
 from mckibben.spec.wishes import Demand, Goal, Measure
 
-__all__ = ["LOST", "MET", "Limit", "Problem", "Tried", "Worth", "limits_of"]
+__all__ = ["LOST", "MET", "Limit", "Task", "Tried", "Worth", "limits_of"]
 
 LOST = 10.0
 """Violation of a limit by a design whose measure is not known, over the limit; no other counts for more."""
@@ -52,7 +52,7 @@ def limits_of(demands: Sequence[Demand]) -> tuple[Limit, ...]:
 
 
 @attrs.frozen(eq=False)
-class Problem:
+class Task:
     """What is free, what is wanted, and within which limits."""
 
     space: Space
@@ -91,20 +91,20 @@ class Worth:
         return np.asarray((self.over <= MET).all(axis=1))
 
 
-def worth_of(problem: Problem, x: np.ndarray, tolerance: float) -> Worth:
+def worth_of(task: Task, x: np.ndarray, tolerance: float) -> Worth:
     """What designs at places (d, axes) are worth, through the batches."""
     count = len(x)
-    values = {measure: np.full(count, np.nan) for measure in problem.measures}
-    for muscle, numbers, index in problem.space.kinds(x):
-        seen = states_at(muscle, numbers, len(index), problem.places, tolerance)
+    values = {measure: np.full(count, np.nan) for measure in task.measures}
+    for muscle, numbers, index in task.space.kinds(x):
+        seen = states_at(muscle, numbers, len(index), task.places, tolerance)
         if seen is not None:
-            for measure in problem.measures:
+            for measure in task.measures:
                 values[measure][index] = value_of(measure, seen)
-    goals = np.stack([values[goal.measure] for goal in problem.goals], axis=1)
-    costs = goals * np.array([goal.sign for goal in problem.goals])
+    goals = np.stack([values[goal.measure] for goal in task.goals], axis=1)
+    costs = goals * np.array([goal.sign for goal in task.goals])
     none = np.zeros((count, 0))
-    limited = [values[limit.demand.measure] for limit in problem.limits]
-    over = [limit.over(value) for limit, value in zip(problem.limits, limited, strict=True)]
+    limited = [values[limit.demand.measure] for limit in task.limits]
+    over = [limit.over(value) for limit, value in zip(task.limits, limited, strict=True)]
     known = np.where(np.isfinite(goals).all(axis=1), -1.0, LOST)
     return Worth(goals, np.stack(limited, axis=1) if limited else none, costs, np.stack([*over, known], axis=1))
 
@@ -112,10 +112,10 @@ def worth_of(problem: Problem, x: np.ndarray, tolerance: float) -> Worth:
 class Tried:
     """Everything that was tried at one tolerance; what was tried before is not tried again."""
 
-    def __init__(self, problem: Problem, tolerance: float, watch: Callable[[int], None]) -> None:
-        self.problem, self.tolerance, self._watch = problem, tolerance, watch
-        self.x = np.zeros((0, len(problem.space.axes)))
-        goals, limits = len(problem.goals), len(problem.limits)
+    def __init__(self, task: Task, tolerance: float, watch: Callable[[int], None]) -> None:
+        self.task, self.tolerance, self._watch = task, tolerance, watch
+        self.x = np.zeros((0, len(task.space.axes)))
+        goals, limits = len(task.goals), len(task.limits)
         self.worth = Worth(*(np.zeros((0, size)) for size in (goals, limits, goals, limits + 1)))
         self._at: dict[bytes, int] = {}
 
@@ -124,11 +124,11 @@ class Tried:
 
     def __call__(self, x: np.ndarray, /) -> Worth:
         """What designs at places (d, axes) are worth."""
-        x = self.problem.space.settled(np.asarray(x, float)) + 0.0
+        x = self.task.space.settled(np.asarray(x, float)) + 0.0
         keys = [row.tobytes() for row in x]
         new = list({key: k for k, key in enumerate(keys) if key not in self._at}.values())
         if new:
-            worth = worth_of(self.problem, x[new], self.tolerance)
+            worth = worth_of(self.task, x[new], self.tolerance)
             self._at |= {keys[k]: len(self.x) + place for place, k in enumerate(new)}
             self.x = np.concatenate([self.x, x[new]])
             self.worth = Worth(*(np.concatenate([getattr(self.worth, name), getattr(worth, name)])

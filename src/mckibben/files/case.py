@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import re
 import tomllib
-from collections.abc import Iterable
+from collections.abc import Iterable, Iterator, Mapping
 from os import PathLike
 from pathlib import Path
 from typing import Any
@@ -13,7 +13,7 @@ from mckibben.spec.errors import SpecError
 from mckibben.spec.merge import check_depth, too_deep
 from mckibben.spec.text import Case, apply_overrides, from_mapping
 
-__all__ = ["read_case", "read_mapping"]
+__all__ = ["dotted", "read_case", "read_mapping"]
 
 _DEEP = re.compile(r"""(?:[\w"'-]{1,40}[ \t]*\.[ \t]*){100}""")
 """A hundred names joined by dots."""
@@ -75,6 +75,18 @@ def read_mapping(path: str | PathLike[str]) -> dict[str, Any]:
         raise SpecError(name, allowed="cannot be read") from error
     check_depth(mapping, name)
     return mapping
+
+
+def dotted(table: Mapping[str, Any], whole: str | None = None, prefix: str = "") -> Iterator[tuple[str, Any]]:
+    """Values by their dotted names, also where the dots were not quoted and TOML has made tables of them.
+
+    A table with the key `whole` is a value itself.
+    """
+    for key, value in table.items():
+        if isinstance(value, Mapping) and whole not in value:
+            yield from dotted(value, whole, f"{prefix}{key}.")
+        else:
+            yield prefix + key, value
 
 
 def _habit(text: str, said: str) -> str:

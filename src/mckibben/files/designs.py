@@ -24,9 +24,9 @@ _NEEDED: dict[str, tuple[tuple[str, ...], str]] = {
     **{name: (("number",), "U") for name in ("number", "said", "searched", "unit", "meaning")},
     "goal_value": (("goal",), "f"), **{f"goal{end}": (("goal",), "U") for end in ("", "_kind", "_unit", "_display")},
     **{f"limit_{name}": (("limit",), "f")
-       for name in ("value", "at", "over", "sign", "gain", "pressure", "contraction")},
+       for name in ("value", "at", "over", "sign", "gain", "pressure", "force", "contraction")},
     **{f"limit{end}": (("limit",), "U") for end in ("", "_kind", "_unit", "_display")},
-    "limit_active": (("limit",), "b"),
+    "limit_active": (("limit",), "b"), "limit_met": (("limit",), "b"),
     **{name: (("state",), "f") for name in STATES}, **{name: (("state",), "U") for name in ("state", "verdict")},
     **{name: (("curve", "point"), "f") for name in CURVES}, "curve": (("curve",), "f"),
 }  # fmt: skip

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Iterable, Mapping
 from os import PathLike
 from pathlib import Path
 from typing import Any
@@ -13,7 +13,7 @@ import numpy as np
 from mckibben.data.branches import LOADING, UNKNOWN, UNLOADING
 from mckibben.data.read import read_data
 from mckibben.data.values import Data
-from mckibben.files.case import read_mapping
+from mckibben.files.case import dotted, read_mapping
 from mckibben.spec import Muscle
 from mckibben.spec.errors import SpecError, nearest
 from mckibben.spec.merge import apply_overrides
@@ -76,7 +76,7 @@ def read_fit(path: str | PathLike[str], overrides: Iterable[str] = ()) -> FitCas
         if not isinstance(table, Mapping):
             raise SpecError(name, table, "must be a table", f"write [{name}] with its keys below")
     muscle = from_mapping({"muscle": mapping["muscle"]}, test_required=False).muscle
-    named = {name: dict(_flat(mapping[name])) for name in ("free", "priors", "offsets") if name in mapping}
+    named = {name: dict(dotted(mapping[name])) for name in ("free", "priors", "offsets") if name in mapping}
     options = {**named, **_checked("options", mapping.get("options", {}), _OPTIONS)}
     for name, (low, high) in _RANGES.items():
         if not low <= options.get(name, low) <= high:
@@ -86,15 +86,6 @@ def read_fit(path: str | PathLike[str], overrides: Iterable[str] = ()) -> FitCas
     free = options.pop("free")
     data = _data(_checked("data", mapping["data"], _DATA), Path(path).parent)
     return FitCase(muscle, data, free, options)
-
-
-def _flat(table: Mapping[str, Any], prefix: str = "") -> Iterator[tuple[str, Any]]:
-    """Numbers by their dotted names, also where the dots were not quoted and TOML has made tables of them."""
-    for key, value in table.items():
-        if isinstance(value, Mapping):
-            yield from _flat(value, f"{prefix}{key}.")
-        else:
-            yield prefix + key, value
 
 
 def _checked(name: str, table: Mapping[str, Any], known: Mapping[str, tuple[tuple[type, str], ...]]) -> dict[str, Any]:

@@ -7,6 +7,8 @@ from typing import TYPE_CHECKING, Any
 import attrs
 import numpy as np
 
+from mckibben.results.variables import OBSERVED
+from mckibben.shown import Shown
 from mckibben.spec import Muscle
 from mckibben.spec.wishes import text_of
 
@@ -16,18 +18,16 @@ if TYPE_CHECKING:
 __all__ = ["CURVES", "STATES", "Designed"]
 
 STATES = {
-    "length": ("m", "distance between the fittings"), "contraction": ("1", "contraction 1 - h/H0"),
-    "pressure": ("Pa", "gauge pressure"), "force": ("N", "axial force"), "volume": ("m^3", "volume inside the braid"),
-    "largest_radius": ("m", "largest radius along the muscle"),
-    "peak_fibre_tension": ("N", "largest tension of one fibre along the muscle"),
-}  # fmt: skip
+    name: OBSERVED[name]
+    for name in ("length", "contraction", "pressure", "force", "volume", "largest_radius", "peak_fibre_tension")
+}
 """What is known of each state of the best design."""
-CURVES = {"curve_contraction": ("1", "contraction 1 - h/H0"), "curve_force": ("N", "axial force")}
+CURVES = {f"curve_{name}": OBSERVED[name] for name in ("contraction", "force")}
 """What is known of its force-contraction curves."""
 
 
 @attrs.frozen(eq=False, repr=False)
-class Designed:
+class Designed(Shown):
     """The best muscle within what is free, as `design` gives it; `muscle` is a muscle like any other.
 
     Args:

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any
 import attrs
 import numpy as np
 
+from mckibben.shown import Shown
 from mckibben.spec import Muscle, Test
 from mckibben.units import show
 
@@ -56,7 +57,7 @@ def dataset(
 
 
 @attrs.frozen(eq=False, repr=False)
-class Tolerances:
+class Tolerances(Shown):
     """How far results scatter where numbers of the muscle and the test do, by derivatives and by sampling.
 
     It is what `tolerances` gives. `spread` and `table` are for people; `data` has everything in SI units.

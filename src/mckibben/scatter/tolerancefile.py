@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Iterable, Mapping
 from os import PathLike
 from typing import Any
 
 import attrs
 
-from mckibben.files.case import read_mapping
+from mckibben.files.case import dotted, read_mapping
 from mckibben.spec.errors import SpecError
 from mckibben.spec.text import Case, apply_overrides, from_mapping
 
@@ -33,13 +33,4 @@ def read_tolerances(path: str | PathLike[str], overrides: Iterable[str] = ()) ->
     table = mapping.pop("tolerances", {})
     if not isinstance(table, Mapping):
         raise SpecError("tolerances", table, "must be a table", 'write [tolerances], and "braid.angle" = "1 deg" below')
-    return ToleranceCase(from_mapping(apply_overrides(mapping, overrides)), dict(_flat(table)))
-
-
-def _flat(table: Mapping[str, Any], prefix: str = "") -> Iterator[tuple[str, Any]]:
-    """Numbers by their dotted names, also where the dots were not quoted and TOML has made tables of them."""
-    for key, value in table.items():
-        if isinstance(value, Mapping):
-            yield from _flat(value, f"{prefix}{key}.")
-        else:
-            yield prefix + key, value
+    return ToleranceCase(from_mapping(apply_overrides(mapping, overrides)), dict(dotted(table)))

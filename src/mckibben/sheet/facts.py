@@ -14,15 +14,16 @@ import numpy as np
 from mckibben.experiments.limits import Limits, limits
 from mckibben.experiments.run import run
 from mckibben.measure.caution import MuscleWarning
+from mckibben.measure.mass import mass_of, over_fibres
 from mckibben.results.result import Result
+from mckibben.results.told import verdict
 from mckibben.results.verdict import Verdict
 from mckibben.spec import BlockedForce, FreeContraction, Isobaric, Muscle, Protocol, Step, Test
+from mckibben.spec.loading import ATMOSPHERE
 from mckibben.spec.plausible import trusted
 
-__all__ = ["ATMOSPHERE", "Facts", "Known", "Level", "cautions_once", "facts"]
+__all__ = ["Fact", "Facts", "Level", "cautions_once", "facts"]
 
-ATMOSPHERE = 101325.0
-"""Pressure [Pa] to which the air of a stroke is converted."""
 POINTS = 16
 """States of each curve."""
 STROKE = 0.08
@@ -36,7 +37,7 @@ USUAL = 0.25
 
 
 @attrs.frozen
-class Known:
+class Fact:
     """A number [SI], NaN with the reason where there is none."""
 
     value: float
@@ -48,9 +49,9 @@ class Level:
     """The muscle at one gauge pressure [Pa]."""
 
     pressure: float
-    blocked: Known  #: force at the length as made [N]
-    contraction: Known  #: free contraction
-    length: Known  #: free length [m]
+    blocked: Fact  #: force at the length as made [N]
+    contraction: Fact  #: free contraction
+    length: Fact  #: free length [m]
     curve: Result
 
 
@@ -63,15 +64,15 @@ class Facts:
     free: tuple[Result, int]  #: the free muscle at the largest pressure: a state, by its number
     range: Limits | None  #: at the largest pressure
     no_range: str  #: why there is none
-    tension: Known  #: largest of a fibre on any curve [N]
+    tension: Fact  #: largest of a fibre on any curve [N]
     where: str  #: where that is
-    safety: Known  #: breaking force over it
-    diameter: Known  #: largest outside diameter on any curve [m]
+    safety: Fact  #: breaking force over it
+    diameter: Fact  #: largest outside diameter on any curve [m]
     bore: float  #: volume of air in the muscle as made, without pressure [m^3]
-    volume: Known  #: likewise free at the largest pressure
-    air: Known  #: of one stroke, at atmospheric pressure [m^3]
-    work: Known  #: of one slow stroke at the largest pressure [J]
-    mass: Known  #: without fittings [kg]
+    volume: Fact  #: likewise free at the largest pressure
+    air: Fact  #: of one stroke, at atmospheric pressure [m^3]
+    work: Fact  #: of one slow stroke at the largest pressure [J]
+    mass: Fact  #: without fittings [kg]
     cautions: tuple[str, ...]
 
     @property
@@ -109,14 +110,14 @@ def facts(
     results = [blocked, *(result for result, _ in free), *(level.curve for level in levels)]
     tension, where = _tension(results)
     strength = muscle.braid.fibre.breaking_force
-    safety = Known(math.nan, "not known: the breaking force of a fibre")
+    safety = Fact(math.nan, "not known: the breaking force of a fibre")
     if strength is not None:
-        safety = Known(strength / tension.value) if tension.value > 0.0 else Known(math.nan, "no fibre is pulled")
+        safety = Fact(strength / tension.value) if tension.value > 0.0 else Fact(math.nan, "no fibre is pulled")
     made, volume = _bore(muscle), _known(*free[-1], "air_volume")
     filled = (pressures[-1] + ATMOSPHERE) / ATMOSPHERE * volume.value - made
     return Facts(
         muscle, tuple(levels), free[-1], reach, why, tension, where, safety, _diameter(levels, muscle), made, volume,
-        Known(filled, volume.reason), _work(levels[-1]), _mass(muscle, *densities),
+        Fact(filled, volume.reason), _work(levels[-1]), _mass(muscle, *densities),
         tuple(cautions_once(one.cautions for one in results)),
     )  # fmt: skip
 
@@ -141,14 +142,13 @@ def _freed(muscle: Muscle, pressures: tuple[float, ...]) -> list[tuple[Result, i
     return [(_run(muscle, way), -1) for way in ways]
 
 
-def _known(result: Result, k: int, name: str) -> Known:
+def _known(result: Result, k: int, name: str) -> Fact:
     """A number of a state that is stable; else why there is none."""
     if result.verdict[k] == Verdict.STABLE:
-        return Known(float(result.column(name)[k]))
+        return Fact(float(result.column(name)[k]))
     if k < 0:  # the reason is that of the step before, which was not finished
         k = int(np.argmin(stable(result)))
-    reason, verdict = str(result.column("reason")[k]), result.verdict[k]
-    return Known(math.nan, reason if reason.startswith(verdict) else f"{verdict}: {reason}")
+    return Fact(math.nan, verdict(result.verdict[k], str(result.column("reason")[k])))
 
 
 def stable(result: Result) -> np.ndarray:
@@ -156,7 +156,7 @@ def stable(result: Result) -> np.ndarray:
     return np.array([word == Verdict.STABLE for word in result.verdict])
 
 
-def _span(muscle: Muscle, contractions: list[Known]) -> tuple[float, float]:
+def _span(muscle: Muscle, contractions: list[Fact]) -> tuple[float, float]:
     """Contractions between which the curves go; each ends where the muscle is free, if that is known."""
     known = [one.value for one in contractions if one.value == one.value]
     far = max(known, key=abs) if known else USUAL
@@ -173,7 +173,7 @@ def _range(muscle: Muscle, pressure: float) -> tuple[Limits | None, str]:
     return (found, "") if found.shortest == found.shortest else (None, found.shortest_cause or "no stable state")
 
 
-def _tension(results: list[Result]) -> tuple[Known, str]:
+def _tension(results: list[Result]) -> tuple[Fact, str]:
     """The largest fibre tension of any stable state, and where."""
     best, where = -math.inf, ""
     for result in results:
@@ -182,13 +182,12 @@ def _tension(results: list[Result]) -> tuple[Known, str]:
         if peaks[k] > best:
             best = float(peaks[k])
             where = f"at {1e3 * result.length[k]:.4g} mm and {1e-5 * result.pressure[k]:.3g} bar"
-    return (Known(best), where) if best > -math.inf else (Known(math.nan, "no state is stable"), "")
+    return (Fact(best), where) if best > -math.inf else (Fact(math.nan, "no state is stable"), "")
 
 
-def _diameter(levels: list[Level], muscle: Muscle) -> Known:
-    over = muscle.braid.fibre.diameter or 0.0
+def _diameter(levels: list[Level], muscle: Muscle) -> Fact:
     radii = [float(level.curve.column("r")[stable(level.curve)].max()) for level in levels if stable(level.curve).any()]
-    return Known(2.0 * max(radii) + over) if radii else Known(math.nan, "no state is stable")
+    return Fact(float(over_fibres(max(radii), muscle))) if radii else Fact(math.nan, "no state is stable")
 
 
 def _bore(muscle: Muscle) -> float:
@@ -200,28 +199,25 @@ def _bore(muscle: Muscle) -> float:
     return math.pi * radius**2 * float(braid.length)
 
 
-def _work(level: Level) -> Known:
+def _work(level: Level) -> Fact:
     """What a slow stroke at this pressure gives, from where the curve begins to where the muscle is free."""
     good = stable(level.curve)
     if level.contraction.reason:
-        return Known(math.nan, level.contraction.reason)
+        return Fact(math.nan, level.contraction.reason)
     if not good.all():
-        return Known(math.nan, "the curve at this pressure has states that are not stable")
-    return Known(float(-np.trapezoid(level.curve.force, level.curve.length)))
+        return Fact(math.nan, "the curve at this pressure has states that are not stable")
+    return Fact(float(-np.trapezoid(level.curve.force, level.curve.length)))
 
 
-def _mass(muscle: Muscle, fibre: float | None, rubber: float | None) -> Known:
+def _mass(muscle: Muscle, fibre: float | None, rubber: float | None) -> Fact:
     """Fibres and chamber, without fittings."""
     braid, chamber = muscle.braid, muscle.chamber
     missing = [] if fibre is not None else ["the density of the fibres"]
     missing += ["the diameter of the fibres"] if braid.fibre.diameter is None else []
     missing += ["the density of the chamber"] if chamber is not None and rubber is None else []
-    if missing or fibre is None or braid.fibre.diameter is None:
-        return Known(math.nan, f"not known: {', '.join(missing)}")
-    total = fibre * braid.fibres * braid.length / math.sin(braid.angle) * math.pi * braid.fibre.diameter**2 / 4.0
-    if chamber is not None and rubber is not None:
-        total += rubber * chamber.area(braid.radius) * (chamber.length or braid.length)
-    return Known(float(total))
+    if missing:
+        return Fact(math.nan, f"not known: {', '.join(missing)}")
+    return Fact(float(mass_of(muscle, fibre, rubber)))
 
 
 _WHERE = re.compile(r"(?:from )?state \d+ \((?P<place>[^)]*)\)(?: and \d+ more)?(?: on)?: (?P<said>.*)", re.DOTALL)

@@ -12,8 +12,9 @@ from matplotlib import colormaps
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
+from mckibben.measure.mass import over_fibres
 from mckibben.results.verdict import Verdict
-from mckibben.sheet.facts import Facts
+from mckibben.sheet.facts import Facts, stable
 from mckibben.spec import Muscle
 from mckibben.units import show
 from mckibben.view import style
@@ -35,7 +36,7 @@ GAP = 0.25
 
 
 @attrs.frozen
-class Side:
+class Outline:
     """The outline of a muscle from the side [mm], maybe with a piece left out of the middle."""
 
     v: np.ndarray
@@ -44,7 +45,7 @@ class Side:
     cut: float  #: length left out; 0 for none
 
     @classmethod
-    def of(cls, v: np.ndarray, r: np.ndarray, z: np.ndarray, longest: float) -> Side:
+    def of(cls, v: np.ndarray, r: np.ndarray, z: np.ndarray, longest: float) -> Outline:
         """The outline, at most `longest` long."""
         even = np.linspace(v[0], v[-1], 2401)
         r, z = np.interp(even, v, r), np.interp(even, v, z)
@@ -69,12 +70,12 @@ def drawing(facts: Facts) -> Figure:
     R, H = 1e3 * float(braid.radius), 1e3 * float(braid.length)
     longest = LONGEST * 2.0 * R
     straight = np.linspace(0.0, H, 61)
-    made = Side.of(straight, np.full(61, R), straight, longest)
+    made = Outline.of(straight, np.full(61, R), straight, longest)
     sides, words = [made], ["as made"]
     free, k = facts.free
     if free.verdict[k] == Verdict.STABLE:
         r, z = 1e3 * free.column("r")[k], 1e3 * free.column("z")[k]
-        sides.append(Side.of(1e3 * free.column("v"), r, z, longest))
+        sides.append(Outline.of(1e3 * free.column("v"), r, z, longest))
         words.append(f"free at {show(facts.pressure, 'Pa', 3)}")
     gap = GAP * 2.0 * R
     lead = 0.22 * 2.0 * R
@@ -99,7 +100,7 @@ def drawing(facts: Facts) -> Figure:
     return figure
 
 
-def _muscle(axes: Axes, side: Side, muscle: Muscle, middle: float, gap: float, lead: float) -> None:
+def _muscle(axes: Axes, side: Outline, muscle: Muscle, middle: float, gap: float, lead: float) -> None:
     """Fittings, body and the fibres that face the viewer."""
     braid = muscle.braid
     rate = 1.0 / (1e3 * float(braid.radius) * math.tan(float(braid.angle)))
@@ -125,7 +126,7 @@ def _muscle(axes: Axes, side: Side, muscle: Muscle, middle: float, gap: float, l
 
 
 def _dimensions(
-    axes: Axes, side: Side, middle: float, gap: float, lead: float, drop: float, length: float, muscle: Muscle,
+    axes: Axes, side: Outline, middle: float, gap: float, lead: float, drop: float, length: float, muscle: Muscle,
     word: str, made: bool,
 ) -> None:  # fmt: skip
     """Length below, diameter at the right, the braid angle and a word at the left."""
@@ -148,9 +149,9 @@ def _dimensions(
     axes.plot([0.5 * end, right + 0.5 * lead], [middle + r] * 2, color=style.BLUE, linewidth=0.4)
     axes.plot([0.5 * end, right + 0.5 * lead], [middle - r] * 2, color=style.BLUE, linewidth=0.4)
     axes.annotate("", (right, middle - r), (right, middle + r), arrowprops=arrow)
-    over = 1e3 * float(muscle.braid.fibre.diameter or 0.0)
-    said = "over the fibres" if over else "to the fibres' centres"
-    axes.text(right + 0.5 * lead, middle, f" ⌀ {_mm(2.0 * r + over)}\n {said}", ha="left", va="center", **text)
+    said = "to the fibres' centres" if muscle.braid.fibre.diameter is None else "over the fibres"
+    outer = 1e3 * float(over_fibres(1e-3 * r, muscle))
+    axes.text(right + 0.5 * lead, middle, f" ⌀ {_mm(outer)}\n {said}", ha="left", va="center", **text)
     angle = f"\nbraid {math.degrees(float(muscle.braid.angle)):.3g}° from the circles" if made else ""
     axes.text(-2.0 * lead, middle, f"{word}{angle}", ha="right", va="center", fontsize=style.TICK)
 
@@ -166,7 +167,7 @@ def curves(facts: Facts) -> Figure:
     colours = colormaps[style.SEQUENCE](np.linspace(0.82, 0.08, len(facts.levels)))
     for level, colour in zip(facts.levels, colours, strict=True):
         curve = level.curve
-        good = np.array([word == Verdict.STABLE for word in curve.verdict])
+        good = stable(curve)
         label = show(level.pressure, "Pa", 3) + ("" if good.all() else f" ({(~good).sum()} of {len(good)} not stable)")
         axes.plot(100.0 * np.where(good, curve.contraction, np.nan), np.where(good, curve.force, np.nan), color=colour,
                   linewidth=1.3, marker="o", markersize=2.0, label=label)  # fmt: skip

@@ -3,15 +3,15 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from typing import Any
 
 import attrs
 
 from mckibben.measure.report import versions
-from mckibben.sheet.facts import ATMOSPHERE, Facts, Known
-from mckibben.spec import Muscle, presets, walk
+from mckibben.sheet.facts import Fact, Facts
+from mckibben.spec import Muscle, presets
 from mckibben.spec.change import CHANGED
-from mckibben.spec.declared import Declared
+from mckibben.spec.loading import ATMOSPHERE
+from mckibben.spec.rows import ASSUMED, muscle_rows
 from mckibben.units import show
 
 __all__ = ["Page", "page"]
@@ -49,7 +49,7 @@ def page(facts: Facts, drawing: str, curves: str, date: str) -> Page:
     top = show(facts.pressure, "Pa", 3)
     name = _short(muscle.name or "Muscle without a name", TITLE)
     preset = (muscle.name or "").removesuffix(CHANGED)
-    kind = _short(presets.about(preset).replace("`", ""), VALUE) if preset in presets.names() else "McKibben muscle"
+    kind = _short(presets.about(preset), VALUE) if preset in presets.names() else "McKibben muscle"
     subtitle = f"{kind[:1].upper()}{kind[1:]}. Computed up to {top}; pressures are gauge pressures."
     heads = ("Pressure", "Blocked force", "Free contraction", "Free length")
     levels: list[tuple[str, ...]] = []
@@ -70,13 +70,13 @@ def page(facts: Facts, drawing: str, curves: str, date: str) -> Page:
     )  # fmt: skip
 
 
-def _text(known: Known, unit: str, digits: int = 4) -> str:
+def _text(known: Fact, unit: str, digits: int = 4) -> str:
     if known.value != known.value:
         return "–"
     return f"{show(100.0 * known.value, '1', digits)} %" if unit == "1" else show(known.value, unit, digits)
 
 
-def _or_reason(known: Known, text: str) -> str:
+def _or_reason(known: Fact, text: str) -> str:
     if known.value == known.value:
         return text
     return known.reason if known.reason.startswith("not known") else f"not computed: {known.reason}"
@@ -109,27 +109,9 @@ def _key(facts: Facts, top: str) -> Iterator[tuple[str, str]]:
 
 
 def _parameters(muscle: Muscle) -> Iterator[tuple[str, str, str, str]]:
-    for name, declared, value in walk(muscle):
-        if name in ("name", "assumed") or value is None:
-            continue
-        if name.startswith("chamber.law.") and muscle.chamber is not None:
-            first = next(other for other, _, one in walk(muscle.chamber.law) if one is not None)
-            if name == f"chamber.law.{first}":
-                yield "chamber.law", muscle.chamber.law.name, "hyperelastic law of the elastomer", ""
-        assumed = any(name == field or name.startswith(f"{field}.") for field in muscle.assumed)
-        yield name, _short(_value(declared, value), VALUE), declared.meaning, "assumed" if assumed else ""
-    if muscle.chamber is None:
-        yield "chamber", "none", "a bare braid", ""
-
-
-def _value(declared: Declared, value: Any) -> str:
-    if declared.kind == "quantity":
-        return declared.explained(value).replace("^2", "²").replace("^3", "³")
-    if declared.kind == "quantities":
-        return ", ".join(declared.text(item) for item in value)
-    if isinstance(value, bool):
-        return "yes" if value else "no"
-    return str(value)
+    for name, said, meaning, source in muscle_rows(muscle):
+        text = {"True": "yes", "False": "no"}.get(said, said).replace("^2", "²").replace("^3", "³")
+        yield name, _short(text, VALUE), meaning, "assumed" if source.startswith(ASSUMED) else ""
 
 
 def _limits(facts: Facts) -> Iterator[str]:

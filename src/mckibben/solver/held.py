@@ -15,14 +15,12 @@ from jaxtyping import Float
 
 from mckibben.compiled.arrays import Array
 from mckibben.model.parameters import Number
+from mckibben.spec.loading import ATMOSPHERE
 
-__all__ = ["ATMOSPHERE", "GASES", "NAMES", "Conditions", "Held", "Now", "conditions", "read_rows"]
+__all__ = ["GASES", "NAMES", "Conditions", "Held", "Now", "conditions", "read_rows"]
 
 NAMES = ("length", "volume", "force", "pressure")
 """What a lab can hold by itself: two of these at a time."""
-
-ATMOSPHERE = 101325.0
-"""Standard atmosphere [Pa], which turns gauge pressure into absolute."""
 
 
 class Now(NamedTuple):

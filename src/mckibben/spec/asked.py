@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-from typing import Any, TypeVar
+from typing import Any, ClassVar, TypeVar
 
-from mckibben.spec.declared import Declared, declare
+from mckibben.spec.declared import Declared, Reads, declare
 from mckibben.spec.errors import SpecError
-from mckibben.spec.fields import quantity
+from mckibben.spec.fields import quantity, spec
 from mckibben.spec.loading import ATMOSPHERE, HIGHEST
 from mckibben.spec.path import Path
 from mckibben.spec.plausible import CONTROLLED
@@ -15,6 +15,7 @@ from mckibben.units import UnitError, show
 
 __all__ = [
     "MEASURES",
+    "AtOneState",
     "Ranged",
     "between_field",
     "check_one_state",
@@ -111,10 +112,30 @@ def _range(measure: Any) -> str:
     return f"from {low} to {high} at {show(measure.pressure, 'Pa', 4)}"
 
 
+@spec()
+class AtOneState(Measure):
+    """A measure of the state at one pressure and contraction, or length."""
+
+    usual: ClassVar[str] = "the length as made"
+    """Where the state is if nothing is said of it."""
+    pressure: Reads[float] = pressure_field()
+    contraction: Reads[float | None] = contraction_field()
+    length: Reads[float | None] = length_field()
+
+    def __attrs_post_init__(self) -> None:
+        check_one_state(self)
+
+    @property
+    def where(self) -> str:
+        return f"at {place_said(self, self.usual)} and {show(self.pressure, 'Pa', 4)}"
+
+
+@spec()
 class Ranged(Measure):
     """A measure over a range of contractions at one pressure."""
 
-    __slots__ = ()
+    pressure: Reads[float] = pressure_field()
+    between: Reads[tuple[float, float] | None] = between_field()
 
     @property
     def where(self) -> str:

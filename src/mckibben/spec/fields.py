@@ -215,15 +215,19 @@ def part(
 @dataclass_transform(
     frozen_default=True, field_specifiers=(quantity, quantities, count, choice, switch, words, part, declare)
 )
-def spec(path: str) -> Callable[[type[T]], type[T]]:
-    """Class decorator: an immutable value class whose errors name its fields as `path`.name."""
+def spec(path: str = "") -> Callable[[type[T]], type[T]]:
+    """Class decorator: an immutable value class whose errors name its fields as `path`.name.
+
+    One without a path has fields for others, which are derived from it, and is not listed.
+    """
 
     def make(cls: type[T]) -> type[T]:
         cls.__spec_path__ = path  # type: ignore[attr-defined]
         made = attrs.define(frozen=True, repr=False)(cls)
         made.__repr__ = as_call  # type: ignore[method-assign]
         made._repr_html_ = Shown._repr_html_  # type: ignore[attr-defined]
-        _CLASSES.append(made)
+        if path:
+            _CLASSES.append(made)
         return made
 
     return make

@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import ClassVar
 
 from mckibben.spec.asked import (
+    AtOneState,
     check_one_state,
     contraction_field,
     density_field,
@@ -25,7 +26,7 @@ __all__ = ["AirVolume", "CurveMiss", "ForceAt", "Mass", "PressureFor", "Stroke"]
 
 @measure
 @spec("force")
-class ForceAt(Measure):
+class ForceAt(AtOneState):
     """Force at one pressure and contraction (or length); as made, the blocked force, where neither is given.
 
     Args:
@@ -43,16 +44,6 @@ class ForceAt(Measure):
     kind: ClassVar[str] = "force"
     meaning: ClassVar[str] = "force"
     unit: ClassVar[str] = "N"
-    pressure: Reads[float] = pressure_field()
-    contraction: Reads[float | None] = contraction_field()
-    length: Reads[float | None] = length_field()
-
-    def __attrs_post_init__(self) -> None:
-        check_one_state(self)
-
-    @property
-    def where(self) -> str:
-        return f"at {place_said(self, 'the length as made')} and {show(self.pressure, 'Pa', 4)}"
 
 
 @measure
@@ -159,7 +150,7 @@ class CurveMiss(Measure):
 
 @measure
 @spec("air-volume")
-class AirVolume(Measure):
+class AirVolume(AtOneState):
     """Volume of the air inside at one pressure; at the free contraction, where it is largest, if nothing else is said.
 
     Args:
@@ -178,16 +169,7 @@ class AirVolume(Measure):
     meaning: ClassVar[str] = "volume of air"
     unit: ClassVar[str] = "m^3"
     low: ClassVar[float] = 0.0
-    pressure: Reads[float] = pressure_field()
-    contraction: Reads[float | None] = contraction_field()
-    length: Reads[float | None] = length_field()
-
-    def __attrs_post_init__(self) -> None:
-        check_one_state(self)
-
-    @property
-    def where(self) -> str:
-        return f"at {place_said(self, 'the free contraction')} and {show(self.pressure, 'Pa', 4)}"
+    usual: ClassVar[str] = "the free contraction"
 
 
 @measure

@@ -5,7 +5,7 @@ from __future__ import annotations
 from enum import StrEnum
 from typing import ClassVar
 
-from mckibben.spec.asked import Ranged, between_field, density_field, measure, pressure_field
+from mckibben.spec.asked import Ranged, density_field, measure
 from mckibben.spec.declared import Reads
 from mckibben.spec.errors import SpecError
 from mckibben.spec.fields import choice, spec
@@ -42,8 +42,6 @@ class Work(Ranged):
     """
 
     kind: ClassVar[str] = "work"
-    pressure: Reads[float] = pressure_field()
-    between: Reads[tuple[float, float] | None] = between_field()
     per: Reads[Per] = choice(Per, meaning="what the work is divided by", default=Per.NOTHING)
     fibre_density: Reads[float | None] = density_field("fibres")
     chamber_density: Reads[float | None] = density_field("chamber")
@@ -91,8 +89,6 @@ class ForceVariation(Ranged):
     unit: ClassVar[str] = "1"
     display: ClassVar[str] = "%"
     low: ClassVar[float] = 0.0
-    pressure: Reads[float] = pressure_field()
-    between: Reads[tuple[float, float] | None] = between_field()
 
 
 @measure
@@ -118,8 +114,6 @@ class Diameter(Ranged):
     meaning: ClassVar[str] = "largest diameter"
     unit: ClassVar[str] = "m"
     low: ClassVar[float] = 0.0
-    pressure: Reads[float] = pressure_field()
-    between: Reads[tuple[float, float] | None] = between_field()
 
 
 @measure
@@ -141,8 +135,6 @@ class FibreTension(Ranged):
     kind: ClassVar[str] = "fibre-tension"
     meaning: ClassVar[str] = "largest fibre tension"
     unit: ClassVar[str] = "N"
-    pressure: Reads[float] = pressure_field()
-    between: Reads[tuple[float, float] | None] = between_field()
 
 
 @measure
@@ -167,8 +159,6 @@ class FibreSafety(Ranged):
     meaning: ClassVar[str] = "safety factor of the fibres"
     unit: ClassVar[str] = "1"
     low: ClassVar[float] = 0.0
-    pressure: Reads[float] = pressure_field()
-    between: Reads[tuple[float, float] | None] = between_field()
 
 
 @measure
@@ -194,5 +184,3 @@ class JammingMargin(Ranged):
     meaning: ClassVar[str] = "room between fibres"
     unit: ClassVar[str] = "1"
     low: ClassVar[float] = -1.0
-    pressure: Reads[float] = pressure_field()
-    between: Reads[tuple[float, float] | None] = between_field()

@@ -2,14 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Iterable, Mapping
 from os import PathLike
 from pathlib import Path
 from typing import Any
 
 import attrs
 
-from mckibben.files.case import read_mapping
+from mckibben.files.case import dotted, read_mapping
 from mckibben.spec.errors import SpecError, nearest
 from mckibben.spec.text import Case, apply_overrides, from_mapping
 
@@ -58,14 +58,5 @@ def read_sweep(path: str | PathLike[str], overrides: Iterable[str] = (), *, requ
         raise SpecError("sweep.designs", designs, "must be the name of a CSV file")
     if over is not None and not isinstance(over, Mapping):
         raise SpecError("sweep.over", over, "must be a table", _EXAMPLE)
-    listed = None if over is None else dict(_flat(over))
+    listed = None if over is None else dict(dotted(over, "from"))
     return SweepCase(case, listed, None if designs is None else Path(path).parent / designs, table.get("chunk"))
-
-
-def _flat(table: Mapping[str, Any], prefix: str = "") -> Iterator[tuple[str, Any]]:
-    """Fields by their dotted names, also where the dots were not quoted and TOML has made tables of them."""
-    for key, value in table.items():
-        if isinstance(value, Mapping) and "from" not in value:
-            yield from _flat(value, f"{prefix}{key}.")
-        else:
-            yield prefix + key, value

@@ -14,7 +14,7 @@ from PIL import Image
 
 from mckibben import disk
 from mckibben.spec.errors import SpecError
-from mckibben.view.look import Look, left_out, reached, the_result
+from mckibben.view.appearance import Appearance, left_out, reached, the_result
 from mckibben.view.stage import Stage, image
 
 __all__ = ["ENDINGS", "animate"]
@@ -74,7 +74,7 @@ def animate(
     if isinstance(fps, bool) or not isinstance(fps, Real) or not 0.1 <= fps <= 50.0:
         raise SpecError("animate.fps", fps, "must be from 0.1 to 50 frames a second")
     shape = the_result("animate", result)
-    look = Look.of("animate", shape, colour, cut, translucent, ghost, axis, tilt, turn, zoom, size)
+    look = Appearance.of("animate", shape, colour, cut, translucent, ghost, axis, tilt, turn, zoom, size)
     states = reached("animate", shape)
     disk.check_target(path, force)
     ffmpeg = _ffmpeg(str(path)) if ending == ".mp4" else None
@@ -95,7 +95,7 @@ def _gif(stage: Stage, states: list[int], fps: float) -> bytes:
     """A GIF, in whose frames a colour is always the same one of the 256 that it has."""
     chosen = sorted({states[round(k)] for k in np.linspace(0, len(states) - 1, min(SAMPLES, len(states)))})
     samples = {state: _frame(stage, state) for state in chosen}
-    palette = _palette(list(samples.values()), stage.map)
+    palette = _palette(list(samples.values()), stage.look.map(stage.result))
     frames = [
         (samples.get(state) or _frame(stage, state)).quantize(palette=palette, dither=Image.Dither.NONE)
         for state in states

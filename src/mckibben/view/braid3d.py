@@ -33,7 +33,7 @@ FITTING = 0.4
 
 
 @attrs.frozen
-class Braid:
+class Body:
     """What is drawn of one state: the surface of centre lines, how thick fibres and wall are, what is cut out."""
 
     tube: Tube
@@ -43,7 +43,7 @@ class Braid:
     cut: float | None = None  #: middle of the sector that is cut out [rad]
 
     @classmethod
-    def of(cls, result: Result, state: int, cut: float | None = None) -> Braid:
+    def of(cls, result: Result, state: int, cut: float | None = None) -> Body:
         """One state of a result."""
         tube, muscle = Tube.of(result, state), result.muscle
         wall = None

@@ -56,7 +56,7 @@ def _curves(axes: Axes, design: Designed) -> None:
         if kind == "force":
             x, y, marker = 100.0 * float(data["limit_contraction"].values[k]), at, "^" if least else "v"
         elif kind == "stroke":
-            x, y, marker = 100.0 * at, 0.0, ">" if least else "<"
+            x, y, marker = 100.0 * at, float(data["limit_force"].values[k]), ">" if least else "<"
         else:
             continue
         label = None if name in shown else f"demanded, {name}"

@@ -10,12 +10,14 @@ from typing import Any
 from matplotlib.figure import Figure
 
 from mckibben.data.values import Data
+from mckibben.results.design import Designed
 from mckibben.results.effects import Effects
 from mckibben.results.fit import Fitted
 from mckibben.results.result import Result, State
 from mckibben.results.rows import COLUMNS, rows
 from mckibben.results.sensitivity import Sensitivity
 from mckibben.results.told import cells, columns, verdict
+from mckibben.results.tolerances import Tolerances
 from mckibben.spec import TESTS, Muscle, spec_classes
 from mckibben.spec.rows import ASSUMED, muscle_rows, part_rows, test_rows
 from mckibben.view import style
@@ -82,6 +84,16 @@ def _fit(fit: Fitted) -> str:
     return _part(repr(fit).strip("<>"), _frame(fit.table), fit.notes) + _image(plot(fit), "the fit")
 
 
+def _design(design: Designed) -> str:
+    tables = _frame(design.table) + _frame(design.limits)
+    return _part(repr(design).strip("<>"), tables, design.notes) + _image(plot(design), "the design")
+
+
+def _tolerances(found: Tolerances) -> str:
+    tables = _frame(found.spread) + _frame(found.table)
+    return _part(repr(found).strip("<>"), tables, found.notes) + _image(plot(found), "tolerances")
+
+
 def _sensitivity(found: Sensitivity) -> str:
     notes = [verdict(found.verdict, found.reason), "per cent of the result per per cent of the number"]
     picture = _image(plot(found), "sensitivity") if found.complete else ""
@@ -99,8 +111,9 @@ def _data(data: Data) -> str:
 
 
 _KINDS: dict[Any, Callable[[Any], str]] = {
-    Muscle: _muscle, Result: _result, State: _state, Fitted: _fit, Sensitivity: _sensitivity, Effects: _effects,
-    Data: _data, tuple(TESTS.values()): _test, spec_classes(): _part_of_muscle,
+    Muscle: _muscle, Result: _result, State: _state, Fitted: _fit, Designed: _design, Tolerances: _tolerances,
+    Sensitivity: _sensitivity, Effects: _effects, Data: _data, tuple(TESTS.values()): _test,
+    spec_classes(): _part_of_muscle,
 }  # fmt: skip
 """What shows each kind of value."""
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import Any
 
-from mckibben.view.look import Look, the_result, the_state
+from mckibben.view.appearance import Appearance, the_result, the_state
 from mckibben.view.stage import Stage
 
 __all__ = ["scene"]
@@ -58,7 +58,7 @@ def scene(
     scene.colour = tension: is unknown; did you mean "fibre_tension"?
     """
     shape = the_result("scene", result)
-    look = Look.of("scene", shape, colour, cut, translucent, ghost, axis, tilt, turn, zoom, size)
+    look = Appearance.of("scene", shape, colour, cut, translucent, ghost, axis, tilt, turn, zoom, size)
     number = the_state("scene", shape, state)
     stage = Stage.of("scene", shape, look, [number], off_screen)
     stage.show(number)

@@ -10,15 +10,13 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-from matplotlib import colormaps
 
 from mckibben import disk
 from mckibben.results.result import Result
 from mckibben.results.variables import FIELDS, has
 from mckibben.spec.errors import SpecError
-from mckibben.view import style
-from mckibben.view.braid3d import Braid
-from mckibben.view.look import Look, the_result, the_state
+from mckibben.view.appearance import Appearance, the_result, the_state
+from mckibben.view.braid3d import Body
 from mckibben.view.mesh import Mesh, solid
 from mckibben.view.projection import MM
 from mckibben.view.render import library
@@ -66,23 +64,23 @@ def save_shape(
         known = " or ".join(f"{name} ({meaning})" for name, meaning in ENDINGS.items())
         raise SpecError(str(path), allowed=f"must end in {known}")
     shape = the_result("save_shape", result)
-    look = Look.of("save_shape", shape, colour, False, False, False, "horizontal", 0.0, 0.0, 1.0, None)
+    look = Appearance.of("save_shape", shape, colour, False, False, False, "horizontal", 0.0, 0.0, 1.0, None)
     number = the_state("save_shape", shape, state)
     disk.check_target(path, force)
-    braid = look.braid(shape, number)
+    body = look.body(shape, number)
     if ending == ".stl":
-        made = stl(solid(braid.tube.shifted(braid.diameter)))
+        made = stl(solid(body.tube.shifted(body.diameter)))
     elif ending == ".glb":
-        made = glb(_parts(braid), _colours(shape, number, look, braid))
+        made = glb(_parts(body), _colours(shape, number, look, body))
     else:
-        made = _vtp(str(path), shape, number, braid)
+        made = _vtp(str(path), shape, number, body)
     return disk.write(path, made, force)
 
 
-def _parts(braid: Braid) -> dict[str, Mesh]:
-    chamber = braid.chamber()
-    return {"fibres": braid.fibre_pipes()} | ({} if chamber is None else {"chamber": chamber}) | {
-        "fittings": braid.fittings()
+def _parts(body: Body) -> dict[str, Mesh]:
+    chamber = body.chamber()
+    return {"fibres": body.fibre_pipes()} | ({} if chamber is None else {"chamber": chamber}) | {
+        "fittings": body.fittings()
     }  # fmt: skip
 
 
@@ -96,17 +94,17 @@ def stl(mesh: Mesh) -> bytes:
     return b"McKibben muscle, outer shape, unit: mm".ljust(80) + struct.pack("<I", len(rows)) + rows.tobytes()
 
 
-def _colours(result: Result, state: int, look: Look, braid: Braid) -> dict[str, Any]:
+def _colours(result: Result, state: int, look: Appearance, body: Body) -> dict[str, Any]:
     """The colours of parts that a field colours, (points, 3) or rather a function of v."""
     values = look.values(result, state)
     if values is None:
         return {}
     low, high = look.limits(result, [state])
     on_chamber = look.on_chamber(result)
-    scale = colormaps[style.DENSITY_CHAMBER if on_chamber else style.DENSITY_MESH]
+    scale = look.map(result)
 
     def of(v: Any) -> Any:
-        return scale((np.interp(v, braid.tube.v, values) - low) / (high - low))[:, :3]
+        return scale((np.interp(v, body.tube.v, values) - low) / (high - low))[:, :3]
 
     return {"chamber" if on_chamber else "fibres": of}
 
@@ -161,12 +159,12 @@ def glb(parts: dict[str, Mesh], colours: dict[str, Any]) -> bytes:
     return b"glTF" + struct.pack("<II", 2, 12 + len(body)) + body
 
 
-def _vtp(name: str, result: Result, state: int, braid: Braid) -> bytes:
+def _vtp(name: str, result: Result, state: int, body: Body) -> bytes:
     """A VTK XML file of all parts with all fields."""
     library(name)
     from mckibben.view.stage import poly_data
 
-    parts = _parts(braid)
+    parts = _parts(body)
     numbers = {"fibres": 0, "chamber": 1, "fittings": 2}
     whole = Mesh.joined(list(parts.values()))
     made = poly_data(whole, 1.0)
@@ -175,7 +173,7 @@ def _vtp(name: str, result: Result, state: int, braid: Braid) -> bytes:
     )
     for field, (unit, _) in FIELDS.items():
         if has(result.muscle, field):
-            made.point_data[field] = np.interp(whole.v, braid.tube.v, result.column(field)[state])
+            made.point_data[field] = np.interp(whole.v, body.tube.v, result.column(field)[state])
             made.field_data[f"unit of {field}"] = [unit]
     for total in ("length", "pressure", "force"):
         made.field_data[total] = [float(result.column(total)[state])]

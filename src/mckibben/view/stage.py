@@ -10,13 +10,12 @@ from typing import Any
 
 import attrs
 import numpy as np
-from matplotlib import colormaps, get_data_path
+from matplotlib import get_data_path
 from PIL import Image
 
 from mckibben.results.result import Result
-from mckibben.view import style
-from mckibben.view.braid3d import Braid
-from mckibben.view.look import PLAIN, Look, head, notes
+from mckibben.view.appearance import PLAIN, Appearance, head, notes
+from mckibben.view.braid3d import Body
 from mckibben.view.mesh import Mesh, surface
 from mckibben.view.projection import MM
 from mckibben.view.render import has_display, ready
@@ -62,13 +61,19 @@ class Stage:
 
     plotter: Any
     result: Result
-    look: Look
+    look: Appearance
     limits: tuple[float, float]
     note: str = ""
 
     @classmethod
     def of(
-        cls, call: str, result: Result, look: Look, states: list[int], off_screen: bool | None = True, note: str = ""
+        cls,
+        call: str,
+        result: Result,
+        look: Appearance,
+        states: list[int],
+        off_screen: bool | None = True,
+        note: str = "",
     ) -> Stage:
         """A stage on which all of these states have room; still empty."""
         pyvista = ready(call)
@@ -80,45 +85,43 @@ class Stage:
         plotter.set_background(PAPER)
         plotter.enable_anti_aliasing("msaa", multi_samples=4)
         stage = cls(plotter, result, look, look.limits(result, states), note)
-        stage._aim([look.braid(result, state) for state in states])
+        stage._aim([look.body(result, state) for state in states])
         return stage
 
     def show(self, state: int) -> None:
         """Put one state on the stage, in place of another."""
-        look, braid = self.look, self.look.braid(self.result, state)
+        look, body = self.look, self.look.body(self.result, state)
         values, on_chamber = look.values(self.result, state), look.on_chamber(self.result)
-        chamber = braid.chamber()
+        chamber = body.chamber()
         plain = PLAIN_FIBRE if values is None else FIBRE
-        self._put("fibres", braid.fibre_pipes(), braid, plain, None if on_chamber else values)
+        self._put("fibres", body.fibre_pipes(), body, plain, None if on_chamber else values)
         if chamber is not None:
             opacity = 0.35 if look.translucent else 1.0
-            self._put("chamber", chamber, braid, RUBBER, values if on_chamber else None, opacity=opacity)
-        self._put("fittings", braid.fittings(), braid, METAL)
+            self._put("chamber", chamber, body, RUBBER, values if on_chamber else None, opacity=opacity)
+        self._put("fittings", body.fittings(), body, METAL)
         if look.ghost:
             self._ghost()
-        self._write(head(self.result, state), [*notes(self.result, braid), *([MADE] if look.ghost else [])])
+        self._write(head(self.result, state), [*notes(self.result, body), *([MADE] if look.ghost else [])])
         if values is not None:
             self._scale()
 
-    def _put(
-        self, name: str, mesh: Mesh, braid: Braid, colour: str, values: Any = None, *, opacity: float = 1.0
-    ) -> None:
+    def _put(self, name: str, mesh: Mesh, body: Body, colour: str, values: Any = None, *, opacity: float = 1.0) -> None:
         """A mesh under a name, coloured by values along v, or plain."""
         made = poly_data(mesh, MM)
         options: dict[str, Any] = {"color": colour}
         if values is not None:
-            made.point_data[self.look.colour] = np.interp(mesh.v, braid.tube.v, values)
-            options = {"scalars": self.look.colour, "cmap": self.map, "clim": self.limits, "show_scalar_bar": False}
+            made.point_data[self.look.colour] = np.interp(mesh.v, body.tube.v, values)
+            options = {
+                "scalars": self.look.colour,
+                "cmap": self.look.map(self.result),
+                "clim": self.limits,
+                "show_scalar_bar": False,
+            }
         shine = {"specular": 0.15, "specular_power": 20.0, "ambient": 0.3, "diffuse": 0.75}
         if opacity < 1.0:
             options["opacity"] = opacity
         self.plotter.add_mesh(made, name=name, interpolate_before_map=True, render=False, **shine, **options)
         self.plotter.actors[name].prop.interpolation = "Phong"
-
-    @property
-    def map(self) -> Any:
-        """The map from numbers to colours."""
-        return colormaps[style.DENSITY_CHAMBER if self.look.on_chamber(self.result) else style.DENSITY_MESH]
 
     def _ghost(self) -> None:
         """The muscle as made: a faint surface with the lines of its fibres."""
@@ -136,9 +139,9 @@ class Stage:
                 joined, name=name, color=GHOST, opacity=opacity, line_width=width, lighting=False, render=False
             )
 
-    def _aim(self, braids: list[Braid]) -> None:
+    def _aim(self, bodies: list[Body]) -> None:
         """The camera: everything has room between the head and the notes."""
-        corners = [part.points for braid in braids for part in (braid.fittings(), surface(braid.tube))]
+        corners = [part.points for body in bodies for part in (body.fittings(), surface(body.tube))]
         if self.look.ghost:
             corners.append(surface(Tube.cylinder(self.result.muscle)).points)
         screen, _ = self.look.view.project(np.concatenate(corners) * MM)

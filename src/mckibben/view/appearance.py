@@ -9,13 +9,14 @@ from typing import Any
 
 import attrs
 import numpy as np
+from matplotlib import colormaps
 
 from mckibben.results.result import Result, State
 from mckibben.results.variables import FIELDS, has
 from mckibben.spec.errors import SpecError, nearest
 from mckibben.units import show
 from mckibben.view import style
-from mckibben.view.braid3d import SECTOR, Braid
+from mckibben.view.braid3d import SECTOR, Body
 from mckibben.view.projection import View
 from mckibben.view.tube import Floats
 
@@ -33,7 +34,7 @@ SMALLEST, LARGEST = 100, 8000
 
 
 @attrs.frozen
-class Look:
+class Appearance:
     """How it is shown; what these are, `scene` says."""
 
     colour: str
@@ -48,7 +49,7 @@ class Look:
     def of(
         cls, call: str, result: Result, colour: Any, cut: Any, translucent: Any, ghost: Any, axis: Any, tilt: Any,
         turn: Any, zoom: Any, size: Any,
-    ) -> Look:  # fmt: skip
+    ) -> Appearance:  # fmt: skip
         """What was asked for; SpecError for what is no such thing."""
         known = [name for name in FIELDS if has(result.muscle, name)]
         if colour is None:
@@ -66,15 +67,19 @@ class Look:
         view = View(axis, float(tilt), float(turn))
         return cls(colour, bool(cut), bool(translucent), bool(ghost), view, float(zoom), pixels)
 
-    def braid(self, result: Result, state: int) -> Braid:
+    def body(self, result: Result, state: int) -> Body:
         """What is drawn of a state; a muscle that is cut open is cut where the viewer stands, and somewhat above."""
         horizontal = self.view.axis == "horizontal"
         towards = -SECTOR / 2.0 + math.radians(12.0) if horizontal else 0.0
-        return Braid.of(result, state, towards - math.radians(self.view.turn) if self.cut else None)
+        return Body.of(result, state, towards - math.radians(self.view.turn) if self.cut else None)
 
     def on_chamber(self, result: Result) -> bool:
         """Whether the field colours the chamber and not the fibres."""
         return self.colour in ON_CHAMBER and result.muscle.chamber is not None
+
+    def map(self, result: Result) -> Any:
+        """The map from numbers to colours."""
+        return colormaps[style.DENSITY_CHAMBER if self.on_chamber(result) else style.DENSITY_MESH]
 
     def values(self, result: Result, state: int) -> Floats | None:
         """The field that colours, along v, in the unit for people."""
@@ -146,14 +151,14 @@ def head(result: Result, state: int) -> str:
     return f"{name}: {said}" + ("" if verdict == "stable" else f" ({verdict})")
 
 
-def notes(result: Result, braid: Braid) -> list[str]:
+def notes(result: Result, body: Body) -> list[str]:
     """What must be known of a picture: what is assumed in it, what is left out."""
     said = [style.assumption(result.muscle)]
     fibre = result.muscle.braid.fibre
     if fibre.diameter is None:
-        said.append(f"Fibres are drawn {show(braid.diameter, 'm', 2)} thick: their diameter is not given.")
-    if braid.fibres < braid.tube.fibres:
-        said.append(f"{braid.fibres} of the {braid.tube.fibres} fibres are drawn.")
+        said.append(f"Fibres are drawn {show(body.diameter, 'm', 2)} thick: their diameter is not given.")
+    if body.fibres < body.tube.fibres:
+        said.append(f"{body.fibres} of the {body.tube.fibres} fibres are drawn.")
     return [line for line in said if line]
 
 
