@@ -11,7 +11,8 @@ _PUBLIC = {
         "ArrudaBoyce", "AxialLaw", "Braid", "Chamber", "CustomLaw", "Ends", "Fibre", "Fittings", "Friction", "Gent",
         "Joint", "MooneyRivlin", "Muscle", "NeoHookean", "Ogden", "Rubber", "Yeoh", "BlockedForce", "FreeContraction",
         "Isobaric", "Isometric", "Isotonic", "Protocol", "Step", "Stiffening",
-        "SpecError",
+        "SpecError", "Constant", "Controller", "Held", "Isothermal", "Jump", "Load", "PID", "PWM", "Polytropic",
+        "Pulley", "Ramp", "Rig", "Series", "Sine", "Supply", "Valve", "Viscosity", "WallHeat",
     ),
     "mckibben.spec.sleeve": ("centre_radius",),
     "mckibben.spec.measures": (
@@ -39,6 +40,8 @@ _PUBLIC = {
     "mckibben.fitting.choice": ("compare_models",),
     "mckibben.designing.design": ("design",),
     "mckibben.designing.answer": ("Design",),
+    "mckibben.motion.simulate": ("simulate", "simulate_many"),
+    "mckibben.results.motion": ("Motion",),
     "mckibben.view.plot": ("plot",),
     "mckibben.view.scene": ("scene",),
     "mckibben.view.animate": ("animate",),

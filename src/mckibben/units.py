@@ -38,6 +38,7 @@ Number: TypeAlias = Any
 
 DISPLAY = {
     "m": "mm", "Pa": "bar", "rad": "deg", "m^3": "mL", "N m^2": "N mm^2", "N m": "N mm", "J": "mJ", "m/N": "mm/N",
+    "m^3/s/Pa": "L/s/bar",
 }  # fmt: skip
 """The unit each SI unit is shown in, where it is not itself."""
 
@@ -82,7 +83,7 @@ def _registry() -> Any:
 def _factor(unit: str, wanted: str) -> float:
     """Factor from `unit` to the SI unit `wanted`; UnitError when unknown or of another kind."""
     clean = unit.replace("°", "deg").replace("·", " ").replace("²", "^2").replace("³", "^3").replace("⁴", "^4")
-    clean = re.sub(r"\s+", " ", clean).strip()
+    clean = re.sub(r"/ ?\(([^()]*)\)", _divided, re.sub(r"\s+", " ", clean)).strip()
     example = f"write a unit of the same kind as {DISPLAY.get(wanted, wanted)}"
     if wanted == "1":
         if clean in ("", "dimensionless"):
@@ -96,6 +97,11 @@ def _factor(unit: str, wanted: str) -> float:
             return factor
         raise UnitError(f'has the wrong kind of unit, "{_short(unit)}"', example)
     return _looked_up(clean, unit, wanted, example)
+
+
+def _divided(found: re.Match[str]) -> str:
+    """What brackets below a stroke hold, unit by unit: "/(s bar)" is "/s/bar"."""
+    return "".join(f"/{word}" for word in re.split(r"[ *]+", found[1].strip()))
 
 
 def _looked_up(clean: str, unit: str, wanted: str, example: str) -> float:
@@ -217,7 +223,10 @@ def from_si(value: Any, unit: str) -> Any:
     return value if unit == "1" else value / _factor(unit, _si_of(unit))
 
 
-_SI = ("m", "N", "Pa", "rad", "m^3", "N m^2", "J", "J/m", "1/m", "m^2", "N/m", "m/N", "kg", "kg/m^3", "J/kg")
+_SI = (
+    "m", "N", "Pa", "rad", "m^3", "N m^2", "J", "J/m", "1/m", "m^2", "N/m", "m/N", "kg", "kg/m^3", "J/kg", "s", "K",
+    "1/s", "m/s", "rad/s", "m/s^2", "N s/m", "N m s", "kg m^2", "W/K", "kg/s", "m^3/s", "m^3/s/Pa",
+)  # fmt: skip
 """SI units of what the package knows."""
 
 

@@ -1,7 +1,9 @@
 """The specification: the muscle and the test that a user describes, immutable and checked, in SI numbers."""
 
+from mckibben.spec.air import Isothermal, Polytropic, Supply, Valve, WallHeat
 from mckibben.spec.axial import AxialLaw
 from mckibben.spec.chamber import Chamber, Side, Wall
+from mckibben.spec.controls import PID, Controller
 from mckibben.spec.declared import describe, numbers, walk
 from mckibben.spec.ends import Ends
 from mckibben.spec.errors import SpecError
@@ -23,15 +25,20 @@ from mckibben.spec.loading import (
     Step,
     Test,
 )
+from mckibben.spec.loads import Held, Load, Pulley, Viscosity
 from mckibben.spec.measures import AirVolume, CurveMiss, ForceAt, Mass, PressureFor, Stroke
 from mckibben.spec.muscle import Braid, Joint, Muscle
 from mckibben.spec.path import Path, PathMode
 from mckibben.spec.ranged import Diameter, FibreSafety, FibreTension, ForceVariation, JammingMargin, Work
 from mckibben.spec.reference import reference_markdown
+from mckibben.spec.rig import Rig
+from mckibben.spec.signals import PWM, Constant, Jump, Ramp, Series, Sine
 from mckibben.spec.stiffening import Stiffening
 
 __all__ = [
     "LAWS",
+    "PID",
+    "PWM",
     "TESTS",
     "AirVolume",
     "Along",
@@ -40,6 +47,8 @@ __all__ = [
     "BlockedForce",
     "Braid",
     "Chamber",
+    "Constant",
+    "Controller",
     "CurveMiss",
     "CustomLaw",
     "Diameter",
@@ -54,12 +63,16 @@ __all__ = [
     "Friction",
     "Gas",
     "Gent",
+    "Held",
     "Isobaric",
     "Isometric",
+    "Isothermal",
     "Isotonic",
     "JammingMargin",
     "Joint",
+    "Jump",
     "Law",
+    "Load",
     "Mass",
     "MooneyRivlin",
     "Muscle",
@@ -67,16 +80,26 @@ __all__ = [
     "Ogden",
     "Path",
     "PathMode",
+    "Polytropic",
     "PressureFor",
     "Protocol",
+    "Pulley",
+    "Ramp",
+    "Rig",
     "Rubber",
+    "Series",
     "Side",
+    "Sine",
     "SpecError",
     "Step",
     "Stiffening",
     "Stroke",
+    "Supply",
     "Test",
+    "Valve",
+    "Viscosity",
     "Wall",
+    "WallHeat",
     "Work",
     "Yeoh",
     "describe",

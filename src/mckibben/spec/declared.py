@@ -124,7 +124,7 @@ def declare(declared: Declared, kw_only: bool = False) -> Any:
     return attrs.field(default=declared.default, converter=converter, metadata=about, kw_only=kw_only)
 
 
-def evolved(value: T, **changes: Any) -> T:
+def evolved(value: T, /, **changes: Any) -> T:
     """A copy of a spec object with some fields changed; the new values are read and checked as when it was made."""
     kinds = {item.name: item for item in describe(type(value))}
     read = {name: _read_again(value, kinds.get(name), new) for name, new in changes.items()}

@@ -1,0 +1,1 @@
+"""Muscles in motion: air, loads, signals and controllers over time."""

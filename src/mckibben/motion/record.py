@@ -1,0 +1,149 @@
+"""From the states of a simulation to its answer: what was seen, energies, and what must be known of it."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Sequence
+from importlib.metadata import version
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from mckibben.motion.drive import Driven
+from mckibben.motion.flow import GAMMA, NORMAL
+from mckibben.motion.mapped import Mapped
+from mckibben.motion.plant import FIRST, PER, Plant, Seen
+from mckibben.results.motion import OF_MUSCLES, OF_RIG, TURNING, Motion
+from mckibben.spec.loads import Held, Load
+from mckibben.spec.rigtext import rig_to_toml
+from mckibben.units import show
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+__all__ = ["recorded"]
+
+NAMES = ("agonist", "antagonist")
+PUSHES = 1e-3
+"""Share of the largest force from which a muscle that pushes is told of."""
+
+
+def recorded(plant: Plant, done: Driven, method: str, tolerance: float) -> Motion:
+    """The answer."""
+    y = np.array(done.states)
+    seen = {
+        name: np.array([[getattr(one, name) for one in rates.muscles] for rates in done.seen]) for name in Seen._fields
+    }
+    muscles = _of_muscles(plant, y, seen)
+    variables: dict[str, Any] = {}
+    several = plant.n > 1
+    dims = ("time", "muscle") if several else ("time",)
+    for name, (unit, meaning) in OF_MUSCLES.items():
+        values = muscles[name] if several else muscles[name][:, 0]
+        variables[name] = (dims, values, {"units": unit, "long_name": meaning})
+    for name, meaning in (("inside", "whether the map is good there"), ("slack", "whether its cable is slack")):
+        values = seen[name].astype(bool)
+        variables[name] = (dims, values if several else values[:, 0], {"long_name": meaning})
+    for name, values in _of_rig(plant, y, muscles).items():
+        unit, meaning = (OF_RIG | TURNING)[name]
+        variables[name] = (("time",), values, {"units": unit, "long_name": meaning})
+    variables["moves"] = (
+        ("time",),
+        np.array(done.modes),
+        {"long_name": "how the load moves: free, stuck, or at an end stop"},
+    )
+    coords: dict[str, Any] = {"time": ("time", np.array(done.times), {"units": "s", "long_name": "time"})}
+    if several:
+        coords["muscle"] = ("muscle", np.array(NAMES), {})
+    for _, array, *_ in variables.values():
+        array.flags.writeable = False
+    return Motion(_dataset(variables, coords, _about(plant, done, seen, method, tolerance)))
+
+
+def _dataset(variables: dict[str, Any], coords: dict[str, Any], about: dict[str, Any]) -> xr.Dataset:
+    import xarray as xr  # here, because it takes half a second to import
+
+    return xr.Dataset(variables, coords, about)
+
+
+def _of_muscles(plant: Plant, y: np.ndarray, seen: dict[str, np.ndarray]) -> dict[str, np.ndarray]:
+    """The variables of the muscles, (time, muscle) each."""
+    parts = y[:, FIRST:].reshape(len(y), plant.n, PER)
+    inside = dict(
+        zip(("mass_in", "mass_out", "enthalpy", "heat", "work"), np.moveaxis(parts[:, :, 4:9], 2, 0), strict=True)
+    )
+    found = {name: seen[name].astype(float) for name in OF_MUSCLES if name in seen} | inside
+    found["pressure_absolute"] = parts[:, :, 0]
+    found["internal"] = parts[:, :, 0] * seen["volume"] / (GAMMA - 1.0)
+    return {name: np.array(values) for name, values in found.items()}
+
+
+def _of_rig(plant: Plant, y: np.ndarray, muscles: dict[str, np.ndarray]) -> dict[str, np.ndarray]:
+    """The variables of the whole, energies from 0 at the start."""
+    x, v = y[:, 0], y[:, 1]
+
+    def since(values: np.ndarray) -> np.ndarray:
+        return np.asarray((values - values[0]).sum(axis=1))
+
+    found = {} if not plant.rig.turns else {"angle": x.copy(), "angular_speed": v.copy()}
+    found["kinetic"] = 0.5 * plant.mass * v**2
+    found["potential"] = -plant.weight * (x - x[0]) + 0.5 * plant.spring * (
+        (x - plant.rest) ** 2 - (x[0] - plant.rest) ** 2
+    )
+    found["lost"], found["pushed"] = y[:, 2].copy(), y[:, 3].copy()
+    found["consumed"] = 1e3 * muscles["mass_in"].sum(axis=1) / NORMAL
+    came = since(muscles["enthalpy"]) + since(muscles["heat"]) + found["pushed"]
+    there = since(muscles["internal"]) + since(muscles["stored"]) + plant.atmosphere * since(muscles["volume"])
+    found["balance"] = came - there - found["kinetic"] + found["kinetic"][0] - found["potential"] - found["lost"]
+    return found
+
+
+def _about(plant: Plant, done: Driven, seen: dict[str, np.ndarray], method: str, tolerance: float) -> dict[str, Any]:
+    rig = plant.rig
+    assumed = sorted({name for muscle in rig.muscles for name in muscle.assumed})
+    return {
+        "rig": rig_to_toml(rig, allow_function=True), "title": _title(plant), "reason": done.reason,
+        "notes": "\n".join(_notes(plant, done, seen)), "events": json.dumps(done.events), "method": method,
+        "tolerance": float(tolerance), "steps": done.steps, "assumed": ", ".join(assumed),
+        "mckibben_version": version("mckibben"),
+    }  # fmt: skip
+
+
+def _title(plant: Plant) -> str:
+    load, rig = plant.rig.load, plant.rig
+    names = " against ".join(f'"{muscle.name}"' if muscle.name else "a muscle" for muscle in rig.muscles)
+    if isinstance(load, Held):
+        return f"{names} held at {show(load.length, 'm', 4)}"
+    if isinstance(load, Load):
+        return f"{names} with {show(load.mass, 'kg', 4)}"
+    return f"{names} on a pulley of {show(load.radius, 'm', 4)}"
+
+
+def _notes(plant: Plant, done: Driven, seen: dict[str, np.ndarray]) -> list[str]:
+    found = []
+    times = np.array(done.times)
+    for k in range(plant.n):
+        name = "the muscle" if plant.n == 1 else f"the {NAMES[k]}"
+        out = ~seen["inside"][:, k].astype(bool)
+        if out.any():
+            count, first = f"{int(out.sum())} of {len(out)} times", show(float(times[out][0]), "s", 4)
+            said = "its numbers there are a continuation, not the muscle's"
+            found.append(f"{name} is outside of its map at {count}, first at {first}: {said}")
+        force = seen["force"][:, k].astype(float)
+        pushing = force < -PUSHES * max(float(np.abs(force).max()), 1e-9)
+        if pushing.any() and not plant.rig.held and not plant.slackens:
+            at = show(float(times[pushing][0]), "s", 4)
+            found.append(f"{name} pushes, first at {at}: on a cable it would be slack (slack = true)")
+    for chart in plant.charts[: 1 if len({id(one) for one in plant.charts}) == 1 else plant.n]:
+        found += _of_map(chart)
+    assumed = {name for muscle in plant.rig.muscles for name in muscle.assumed}
+    if assumed:
+        found.append(f"assumed, not measured: {', '.join(sorted(assumed))}")
+    return found
+
+
+def _of_map(chart: Mapped) -> Sequence[str]:
+    error = getattr(chart, "error", None)
+    return (
+        [] if error is None else [f"the forces are those of a map, good to {100.0 * float(error):.2g} % of the largest"]
+    )

@@ -1,0 +1,126 @@
+"""The state in which a rig begins: as given, or the equilibrium at the pressure of the start."""
+
+from __future__ import annotations
+
+from mckibben.motion.mapped import ends_of
+from mckibben.motion.modes import begun
+from mckibben.motion.plant import FIRST, PER, Mode, Plant
+from mckibben.spec.errors import SpecError
+from mckibben.units import show
+
+__all__ = ["at_rest", "state_of"]
+
+LOOKED_AT = 33
+"""Places between which an equilibrium is looked for."""
+
+
+def state_of(plant: Plant, x: float) -> list[float]:
+    """The state at rest at a place, without slack, at the pressures of the start."""
+    rig = plant.rig
+    y = [x, 0.0, 0.0, 0.0] + [0.0] * (PER * plant.n)
+    for k, P in enumerate(rig.pressures):
+        y[FIRST + PER * k : FIRST + PER * k + 3] = [
+            P + rig.atmosphere,
+            rig.temperature,
+            plant.offsets[k] + plant.ratios[k] * x,
+        ]
+    return y
+
+
+def at_rest(plant: Plant) -> list[float]:
+    """The state at the start. SpecError where it is outside of the map, or where there is no equilibrium."""
+    rig = plant.rig
+    load = rig.load
+    given = load.length if rig.held else load.start
+    low, high = _room(plant)
+    name = "held.length" if rig.held else f"{load.kind}.start"
+    unit = "rad" if rig.turns else "m"
+    for k, P in enumerate(rig.pressures):
+        first, last = plant.charts[k].pressures
+        if not first - 1e-6 * (last - first) <= P <= last * (1.0 + 1e-9):
+            said = f"is outside of the map, {show(first, 'Pa', 4)} to {show(last, 'Pa', 4)}"
+            raise SpecError("rig.pressure", show(P, "Pa"), said, "give a map that reaches it")
+    if given is not None:
+        if not low <= given <= high:
+            said = f"is outside of the map or of the end stops: {show(low, unit, 5)} to {show(high, unit, 5)} will do"
+            raise SpecError(name, show(given, unit), said, "mk.limits tells what the muscle can do")
+        x = float(given)
+    else:
+        x = _equilibrium(plant, low, high, name, unit)
+    if isinstance(plant.rest, float) and rig.mass and not rig.turns and load.spring_at is None:
+        plant.rest = x
+    y = state_of(plant, x)
+    _slacken(plant, y)
+    plant.mode = begun(plant, 0.0, y)
+    return y
+
+
+def _room(plant: Plant) -> tuple[float, float]:
+    """The places that map and stops allow at the start."""
+    low, high = float("-inf"), float("inf")
+    for k, P in enumerate(plant.rig.pressures):
+        ends = ends_of(plant.charts[k], P)
+        reach = sorted((end - plant.offsets[k]) / plant.ratios[k] for end in ends)
+        low, high = max(low, reach[0]), min(high, reach[1])
+    if plant.stops[0] is not None:
+        low = max(low, plant.stops[0])
+    if plant.stops[1] is not None:
+        high = min(high, plant.stops[1])
+    if low > high:
+        raise SpecError(f"{plant.rig.load.kind}", allowed="leaves no place at which all muscles are in their maps",
+                        advice="change the lengths at angle 0, or the end stops")  # fmt: skip
+    return low, high
+
+
+def _equilibrium(plant: Plant, low: float, high: float, name: str, unit: str) -> float:
+    """The place at which nothing pushes, or the stop against which it does."""
+    from scipy.optimize import brentq
+
+    plant.mode = Mode("stuck", 0.0, (False, False))
+    wanders = plant.rest if not plant.rig.turns and plant.rig.load.spring_at is None else None
+
+    def push(x: float) -> float:
+        if wanders is not None:
+            plant.rest = x  # without a place of its own the spring has no force at the start
+        y = state_of(plant, x)
+        found = plant.rates(0.0, y)
+        if not plant.slackens:
+            return found.push
+        return found.push - sum(-plant.ratios[k] * min(seen.force, 0.0) for k, seen in enumerate(found.muscles))
+
+    places = [low + (high - low) * k / (LOOKED_AT - 1) for k in range(LOOKED_AT)]
+    seen = [push(x) for x in places]
+    for k in range(LOOKED_AT - 1):
+        if seen[k] >= 0.0 > seen[k + 1]:
+            return float(brentq(push, places[k], places[k + 1], xtol=1e-14, rtol=1e-14))
+    if seen[0] < 0.0 and plant.stops[0] == low:
+        return low
+    if seen[-1] >= 0.0 and plant.stops[1] == high:
+        return high
+    if seen[-1] == 0.0:
+        return high
+    way = "longer than the map goes" if (seen[-1] > 0.0) == (not plant.rig.turns) else "out of the map"
+    between = f"{show(low, unit, 5)} and {show(high, unit, 5)}"
+    said = f"is not given, and no equilibrium is between {between}: the load draws it {way}"
+    raise SpecError(name, allowed=said, advice="give a start, another load, a pressure at the start, or an end stop")
+
+
+def _slacken(plant: Plant, y: list[float]) -> None:
+    """Muscles that would push at the start are slack where their cables allow it."""
+    if not plant.slackens:
+        return
+    from scipy.optimize import brentq
+
+    seen = plant.rates(0.0, y).muscles
+    slack = [False, False]
+    for k, one in enumerate(seen):
+        if one.force >= 0.0:
+            continue
+        P = plant.rig.pressures[k]
+        ends, at = ends_of(plant.charts[k], P), plant.ats[k]
+        if at(ends.high, P).force > 0.0 > at(one.length, P).force:
+            y[FIRST + PER * k + 2] = float(
+                brentq(lambda h, at=at, P=P: at(h, P).force, one.length, ends.high, xtol=1e-14)
+            )
+            slack[k] = True
+    plant.mode = Mode(plant.mode.moves, 0.0, (slack[0], slack[1]))
