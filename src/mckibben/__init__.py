@@ -44,6 +44,7 @@ _PUBLIC = {
     "mckibben.designing.design": ("design",),
     "mckibben.designing.answer": ("Design",),
     "mckibben.motion.simulate": ("simulate", "simulate_many"),
+    "mckibben.motion.rigfile": ("read_rig", "read_signal"),
     "mckibben.results.motion": ("Motion",),
     "mckibben.view.plot": ("plot",),
     "mckibben.view.scene": ("scene",),

@@ -21,6 +21,7 @@ from mckibben.app import look as commands_look
 from mckibben.app import reach as commands_reach
 from mckibben.app import run as commands_run
 from mckibben.app import sensitivity as commands_derive
+from mckibben.app import simulate as commands_simulate
 from mckibben.app import sweep as commands_sweep
 from mckibben.app import tolerances as commands_tolerances
 from mckibben.app import view as commands_view
@@ -50,6 +51,7 @@ app.command(epilog=commands_tolerances.EPILOG)(commands_tolerances.tolerances)
 app.command(epilog=commands_effects.EPILOG)(commands_effects.effects)
 app.command(epilog=commands_fit.EPILOG)(commands_fit.fit)
 app.command(epilog=commands_design.EPILOG)(commands_design.design)
+app.command(epilog=commands_simulate.EPILOG)(commands_simulate.simulate)
 app.command(epilog=commands_reach.LIMITS)(commands_reach.limits)
 app.command(epilog=commands_reach.WORKING_RANGE)(commands_reach.working_range)
 app.command(epilog=commands_reach.FORCE_MAP)(commands_reach.force_map)

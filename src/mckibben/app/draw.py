@@ -21,6 +21,7 @@ if TYPE_CHECKING:
     from mckibben.potential.chart import Chart
     from mckibben.results.design import Designed
     from mckibben.results.fit import Fitted
+    from mckibben.results.motion import Motion
     from mckibben.results.result import Result
 
 __all__ = ["PLOT", "REPRODUCE", "plot", "reproduce"]
@@ -48,7 +49,7 @@ class Kind(StrEnum):
 
 @command
 def plot(
-    file: Annotated[Path, typer.Argument(metavar="FILE.nc", help="what mckibben run, fit, design or chart saved")],
+    file: Annotated[Path, typer.Argument(metavar="FILE.nc", help="what run, fit, design, chart or simulate saved")],
     output: Annotated[
         Path | None,
         typer.Option("--output", "-o", metavar="PICTURE", help=r"the picture: .png, .pdf or .svg \[default: FILE.png]"),
@@ -94,7 +95,7 @@ def plot(
         say(f"model less measured: {compare.compare(result, measured)}")
 
 
-def _figure(result: Result | Fitted | Designed | Chart, kind: Kind, measured: Data | None) -> Figure:
+def _figure(result: Result | Fitted | Designed | Chart | Motion, kind: Kind, measured: Data | None) -> Figure:
     import matplotlib
 
     matplotlib.use("Agg")  # draws to files only, without a window

@@ -202,6 +202,12 @@ def _content(file: Path) -> list[tuple[str, str]]:
             from mckibben.app import charted
 
             return [("file", str(file)), *charted.described(found)]
+        from mckibben.results.motion import Motion
+
+        if isinstance(found, Motion):
+            from mckibben.app import moved
+
+            return [("file", str(file)), *moved.described(found)]
         from mckibben.app import designed
 
         return [("file", str(file)), *designed.described(found)]

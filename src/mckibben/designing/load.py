@@ -1,4 +1,4 @@
-"""Opening what was saved, by the ending of its name and what is in it: a result, a fit, a design, a map, or a sweep."""
+"""Opening what was saved, by the ending of its name and what is in it."""
 
 from __future__ import annotations
 
@@ -14,19 +14,21 @@ if TYPE_CHECKING:
     from mckibben.designing.answer import Design
     from mckibben.fitting.answer import Fit
     from mckibben.potential.chart import Chart
+    from mckibben.results.motion import Motion
     from mckibben.results.result import Result
 
 __all__ = ["load"]
 
 
-def load(path: str | PathLike[str]) -> Result | Fit | Design | Chart | Dataset:
+def load(path: str | PathLike[str]) -> Result | Fit | Design | Chart | Motion | Dataset:
     """What is in an `.nc` file (a result, fit, design or map, equal to what was saved) or a `.zarr` store (a sweep).
 
     Args:
         path: the file or the store.
 
     Returns:
-        A `Result`, a `Fit`, a `Design` or a `Chart`; for a sweep an xarray Dataset, read from the disk when used.
+        A `Result`, a `Fit`, a `Design`, a `Chart` or a `Motion`; for a sweep an xarray Dataset, read from
+        the disk when used.
 
     Raises:
         SpecError: if there is nothing, or nothing that `save` or `sweep` wrote, or a file that is damaged.
@@ -42,9 +44,10 @@ def load(path: str | PathLike[str]) -> Result | Fit | Design | Chart | Dataset:
         return sweeps.load(path)
     found = store.load(path)
     from mckibben.potential.chart import Chart
+    from mckibben.results.motion import Motion
     from mckibben.results.result import Result
 
-    if isinstance(found, (Result, Chart)):
+    if isinstance(found, (Result, Chart, Motion)):
         return found
     from mckibben.results.fit import Fitted
 

@@ -1,4 +1,4 @@
-"""Saving and loading results, fits, designs and maps by the ending of the file's name."""
+"""Saving and loading results, fits, designs, maps and motions by the ending of the file's name."""
 
 from __future__ import annotations
 
@@ -13,6 +13,7 @@ if TYPE_CHECKING:
     from mckibben.potential.chart import Chart
     from mckibben.results.design import Designed
     from mckibben.results.fit import Fitted
+    from mckibben.results.motion import Motion
     from mckibben.results.result import Result
 
 __all__ = ["SUFFIXES", "check_output", "load", "load_result", "save", "suffix_of"]
@@ -40,11 +41,11 @@ def check_output(path: str | PathLike[str], force: bool = False) -> None:
 
 
 def save(result: Any, path: str | PathLike[str], force: bool = False) -> Path:
-    """Save a result, a fit, a design or a map: `.nc` keeps everything and can be loaded again, `.csv` is a table.
+    """Save a result, fit, design, map or motion: `.nc` keeps everything and can be loaded again, `.csv` is a table.
 
     A table holds nothing but its head and its rows, which are states, of a fit the measured points with their
-    residuals, of a design its front, of a map a grid; what was computed and by what is in a text file beside it
-    ("out.csv.txt").
+    residuals, of a design its front, of a map a grid, of a motion what was seen over time; what was computed and
+    by what is in a text file beside it ("out.csv.txt").
 
     Args:
         result: what `run`, `solve`, `fit`, `design` or `chart` gave. Of a `State` its `result` is saved, and that is
@@ -80,6 +81,12 @@ def save(result: Any, path: str | PathLike[str], force: bool = False) -> Path:
             from mckibben.files import charts
 
             return (charts.save if whole else charts.save_csv)(result, path, force)
+        from mckibben.results.motion import Motion
+
+        if isinstance(result, Motion):
+            from mckibben.files import motions
+
+            return (motions.save if whole else motions.save_csv)(result, path, force)
         from mckibben.files import designs
 
         return (designs.save if whole else designs.save_csv)(result, path, force)
@@ -92,27 +99,28 @@ def save(result: Any, path: str | PathLike[str], force: bool = False) -> Path:
     return table.save_csv(result, path, force)
 
 
-def _result(given: Any) -> Result | Fitted | Designed | Chart:
+def _result(given: Any) -> Result | Fitted | Designed | Chart | Motion:
     from mckibben.potential.chart import Chart
     from mckibben.results.design import Designed
     from mckibben.results.fit import Fitted
+    from mckibben.results.motion import Motion
     from mckibben.results.result import Result, State
 
     if isinstance(given, State):
         return given.result
-    if isinstance(given, (Result, Fitted, Designed, Chart)):
+    if isinstance(given, (Result, Fitted, Designed, Chart, Motion)):
         return given
     if hasattr(given, "to_netcdf"):
         raise SpecError(
             "save",
-            allowed="takes what run, solve, fit, design or chart gave",
+            allowed="takes what run, solve, fit, design, chart or simulate gave",
             advice='write a Dataset with data.to_netcdf("x.nc")',
         )
-    raise SpecError("save", given, "must be what run, solve, fit, design or chart gave")
+    raise SpecError("save", given, "must be what run, solve, fit, design, chart or simulate gave")
 
 
-def load(path: str | PathLike[str]) -> Result | Fitted | Designed | Chart:
-    """The result, fit, design or map in an `.nc` file. SpecError for any other file, or one that is not whole."""
+def load(path: str | PathLike[str]) -> Result | Fitted | Designed | Chart | Motion:
+    """The result, fit, design, map or motion in an `.nc` file. SpecError for any other file, or a damaged one."""
     if Path(path).suffix.lower() == ".csv":
         raise SpecError(str(path), allowed="is a table only", advice="save results as .nc to load them again")
     if Path(path).suffix.lower() == ".zarr":
@@ -132,6 +140,10 @@ def load(path: str | PathLike[str]) -> Result | Fitted | Designed | Chart:
         from mckibben.files import charts
 
         return charts.of(stored, str(path))
+    if hdf5.kind(stored) == "motion":
+        from mckibben.files import motions
+
+        return motions.of(stored, str(path))
     return netcdf.of(stored, str(path))
 
 
@@ -141,6 +153,7 @@ def load_result(path: str | PathLike[str]) -> Result:
     from mckibben.results.result import Result
 
     if not isinstance(found, Result):
-        what = "fit" if hasattr(found, "residuals") else "map" if hasattr(found, "free_length") else "design"
+        known = (("residuals", "fit"), ("free_length", "map"), ("consumed", "motion"))
+        what = next((name for has, name in known if hasattr(found, has)), "design")
         raise SpecError(str(path), allowed=f"holds a {what}, not a result", advice="open it with mckibben.load")
     return found

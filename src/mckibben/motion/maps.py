@@ -31,10 +31,15 @@ def maps_of(rig: Rig, chart: Any = None) -> tuple[Any, ...]:
         raise SpecError("simulate.chart", allowed=f"must be {len(muscles)}, one for each muscle, not {len(charts)}")
     for one, muscle in zip(charts, muscles, strict=True):
         if not isinstance(one, Mapped):
-            raise SpecError("simulate.chart", one, "must be a map", 'such as mk.chart(muscle, length="60 mm to 115 mm", pressure="0 to 3 bar")')
+            advice = 'such as mk.chart(muscle, length="60 mm to 115 mm", pressure="0 to 3 bar")'
+            raise SpecError("simulate.chart", one, "must be a map", advice)
         own = getattr(one, "muscle", None)
         if own is not None and own != muscle:
-            raise SpecError("simulate.chart", allowed="is that of another muscle", advice="make one of the rig's own, or leave it out")
+            raise SpecError(
+                "simulate.chart",
+                allowed="is that of another muscle",
+                advice="make one of the rig's own, or leave it out",
+            )
     return charts
 
 

@@ -14,6 +14,7 @@ from mckibben.potential.chart import Chart
 from mckibben.results.design import Designed
 from mckibben.results.effects import Effects
 from mckibben.results.fit import Fitted
+from mckibben.results.motion import Motion
 from mckibben.results.result import Result, State
 from mckibben.results.rows import COLUMNS, rows
 from mckibben.results.sensitivity import Sensitivity
@@ -94,6 +95,11 @@ def _chart(chart: Chart) -> str:
     return _part(repr(chart).strip("<>"), _frame(chart.summary), chart.notes) + _image(plot(chart), "the map")
 
 
+def _motion(motion: Motion) -> str:
+    notes = [*((f"not complete: {motion.reason}",) if motion.reason else ()), *motion.notes]
+    return _part(repr(motion).strip("<>"), _frame(motion.summary()), notes) + _image(plot(motion), "the motion")
+
+
 def _tolerances(found: Tolerances) -> str:
     tables = _frame(found.spread) + _frame(found.table)
     return _part(repr(found).strip("<>"), tables, found.notes) + _image(plot(found), "tolerances")
@@ -117,8 +123,8 @@ def _data(data: Data) -> str:
 
 _KINDS: dict[Any, Callable[[Any], str]] = {
     Muscle: _muscle, Result: _result, State: _state, Fitted: _fit, Designed: _design, Tolerances: _tolerances,
-    Sensitivity: _sensitivity, Effects: _effects, Data: _data, Chart: _chart, tuple(TESTS.values()): _test,
-    spec_classes(): _part_of_muscle,
+    Sensitivity: _sensitivity, Effects: _effects, Data: _data, Chart: _chart, Motion: _motion,
+    tuple(TESTS.values()): _test, spec_classes(): _part_of_muscle,
 }  # fmt: skip
 """What shows each kind of value."""
 

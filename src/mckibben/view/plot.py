@@ -12,6 +12,7 @@ from mckibben.potential.chart import Chart
 from mckibben.results.design import Designed
 from mckibben.results.effects import Effects
 from mckibben.results.fit import Fitted
+from mckibben.results.motion import Motion
 from mckibben.results.result import Result, State
 from mckibben.results.sensitivity import Sensitivity
 from mckibben.results.tolerances import Tolerances
@@ -24,6 +25,7 @@ from mckibben.view.design import designed
 from mckibben.view.effects import bars
 from mckibben.view.fit import fitted
 from mckibben.view.measured import overlay
+from mckibben.view.motion import moved
 from mckibben.view.tolerances import scatter
 from mckibben.view.tornado import tornado
 
@@ -37,11 +39,11 @@ KINDS: dict[str, Callable[[Result], Figure]] = {
     "shares": curves.shares,
 }
 """The pictures of a result."""
-_TAKES = "a result of run, solve, fit, design, chart, sensitivity, tolerances, effects, force_map or working_range"
+_TAKES = "a result of run, solve, fit, design, chart, simulate, sensitivity, tolerances, effects, a map"
 
 
 def plot(result: Any, kind: str = "auto", data: Any = None) -> Figure:
-    """Draw what `run`, `solve`, `load`, `fit`, `design`, `chart`, `sensitivity`, `tolerances`, `effects` or a map gave.
+    """Draw what `run`, `solve`, `load`, `fit`, `design`, `chart`, `simulate`, `effects` and so on gave.
 
     Nothing is solved.
 
@@ -52,7 +54,8 @@ def plot(result: Any, kind: str = "auto", data: Any = None) -> Figure:
     force map as contours over length and pressure, a working range as the region in that plane, a sensitivity as a
     tornado chart, tolerances as distributions with the part of each number, effects as bars, a fit as its forces over
     the measured ones, with what is left, a design as the force of the best over its contraction with what was demanded,
-    or as its front, a map that `chart` made as its forces over contraction, and over the range with its edges.
+    or as its front, a map that `chart` made as its forces over contraction, and over the range with its edges, a
+    motion as what moves, pressure, force and air over time.
 
     Args:
         result: what one of these calls gave, or several results of one kind of test by their names, as
@@ -91,7 +94,7 @@ def plot(result: Any, kind: str = "auto", data: Any = None) -> Figure:
         return _family(result, kind)
     own: dict[type, Callable[[Any], Figure]] = {
         Sensitivity: tornado, Tolerances: scatter, Effects: bars, Fitted: fitted, Designed: designed,
-        Chart: charted,
+        Chart: charted, Motion: moved,
     }  # fmt: skip
     draw = next((draw for kinds, draw in own.items() if isinstance(result, kinds)), None) or _of_dataset(result)
     if kind != "auto":
