@@ -23,7 +23,8 @@ if TYPE_CHECKING:
 __all__ = ["of", "save", "save_csv"]
 
 _ABOUT = {"rig": str, "title": str, "notes": str, "reason": str, "events": str, "method": str, "assumed": str,
-          "mckibben_version": str, "tolerance": float, "steps": int}  # fmt: skip
+          "mckibben_version": str, "load": str, "tolerance": float,
+          "supplied": float, "atmosphere": float, "temperature": float, "steps": int}  # fmt: skip
 """Attributes that a file must have."""
 
 

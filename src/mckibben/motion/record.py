@@ -104,7 +104,9 @@ def _about(plant: Plant, done: Driven, seen: dict[str, np.ndarray], method: str,
     return {
         "rig": rig_to_toml(rig, allow_function=True), "title": _title(plant), "reason": done.reason,
         "notes": "\n".join(_notes(plant, done, seen)), "events": json.dumps(done.events), "method": method,
-        "tolerance": float(tolerance), "steps": done.steps, "assumed": ", ".join(assumed),
+        "tolerance": float(tolerance), "steps": done.steps, "load": rig.load.kind,
+        "supplied": float(plant.supplied), "atmosphere": float(plant.atmosphere), "temperature": float(plant.around),
+        "assumed": ", ".join(assumed),
         "mckibben_version": version("mckibben"),
     }  # fmt: skip
 

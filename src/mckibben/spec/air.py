@@ -129,7 +129,7 @@ class Valve:
             others: `vent` and `delay`.
 
         >>> 1e8 * mk.Valve.nominal("350 L/min").C  # L/s/bar
-        1.299...
+        1.376...
         """
         declared = Declared(kind="quantity", meaning="nominal flow", read=read_quantity, unit="m^3/s", low=0.0,
                             low_open=True, high=1e3)  # fmt: skip

@@ -166,7 +166,6 @@ class Viscosity:
     0.5
     """
 
-    kind: ClassVar[str] = "viscosity"
     damping: Reads[float] = quantity("N s/m", meaning="force per speed", low=0.0, low_open=True, high=1e9)
     stiffness: Reads[float | None] = quantity(
         "N/m", meaning="stiffness of the spring in series; none", low=0.0, low_open=True, high=1e12, default=None
