@@ -16,7 +16,7 @@ from mckibben.app.cli import app
 pytestmark = pytest.mark.docs
 
 EXAMPLES = Path(__file__).parent.parent / "examples"
-CASES = sorted(set(EXAMPLES.glob("*.toml")) - {EXAMPLES / "fit.toml", EXAMPLES / "design.toml"})
+CASES = sorted(set(EXAMPLES.glob("*.toml")) - {EXAMPLES / f"{name}.toml" for name in ("fit", "design", "rig")})
 HALF_A_DIGIT = 6e-4
 """The theory page has three decimals, of N and of mm."""
 
@@ -180,6 +180,41 @@ def test_chart_controller(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsy
     assert [row[1:] for row in asked] == [pytest.approx(row, abs=1.1e-3) for row in expected]
     assert (solved, free[1:]) == ([pytest.approx(40.0, abs=0.01)], [pytest.approx(81.98, abs=0.011)])
     assert (tmp_path / "out" / "chart.png").stat().st_size > 10_000
+
+
+def test_lift_by_pwm(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]) -> None:
+    low, high, left, air, _ = printed("lift_by_pwm.py", tmp_path, monkeypatch, capsys)
+    assert low == pytest.approx([30.0, 109.82, 0.354, 0.046], abs=0.011)
+    assert high == pytest.approx([50.0, 96.76, 0.808, 0.097], abs=0.011)
+    assert left[0] == pytest.approx(1.170, abs=2e-3)
+    assert air[1] == pytest.approx(0.095, abs=1.1e-3)
+    # a duty of 50 % carries the weight at the length that the muscle has at this pressure by itself
+    state = mk.solve(mk.presets.paper(), force=3.0 * 9.80665, pressure=high[2] * 1e5)
+    assert 1e3 * state.length == pytest.approx(high[1], abs=0.3)
+
+
+def test_the_rig_file_is_the_same_rig() -> None:
+    rig = mk.read_rig(EXAMPLES / "rig.toml").rig
+    assert rig.load == mk.Load(mass="3 kg", damping="20 N s/m", stop_high="110 mm")
+    assert rig.valve == mk.Valve(C="0.03 L/s/bar", b=0.3, delay="5 ms")
+    assert rig.command == mk.PWM(mk.Jump(0.5, before=0.3, at="1.5 s"), frequency="20 Hz")
+
+
+def test_joint_pid(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]) -> None:
+    rise, pushed, pressures, swings, _ = printed("joint_pid.py", tmp_path, monkeypatch, capsys)
+    assert rise == pytest.approx([0.314, 0.0, 0.618], abs=3e-3)
+    assert pushed == pytest.approx([0.2, 7.34, 12.0], abs=0.02)
+    assert pressures[:2] == pytest.approx([1.430, 0.688], abs=3e-3)
+    assert swings == pytest.approx([4.82, 0.660], abs=0.011)
+
+
+def test_size_a_valve(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]) -> None:
+    fill, vent, whole, half, fifth, _ = printed("size_a_valve.py", tmp_path, monkeypatch, capsys)
+    assert fill == pytest.approx([0.137, 0.3, 34.8, 0.25], rel=5e-3)
+    assert vent[0] == pytest.approx(0.194, abs=2e-3)
+    times = [row[2] for row in (whole, half, fifth)]
+    assert times[0] < times[1] < times[2]
+    assert whole[3] == pytest.approx(92.41, abs=0.03)
 
 
 def made_up() -> mk.Muscle:

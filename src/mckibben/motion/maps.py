@@ -5,8 +5,6 @@ from __future__ import annotations
 from functools import lru_cache
 from typing import Any
 
-from mckibben.charts.chart import chart as make
-from mckibben.model.extension import longest
 from mckibben.motion.mapped import Mapped
 from mckibben.spec.errors import SpecError
 from mckibben.spec.muscle import Muscle
@@ -51,6 +49,9 @@ def _top(rig: Rig) -> float:
 
 @lru_cache(maxsize=16)
 def _made(muscle: Muscle, top: float) -> Any:
+    from mckibben.charts.chart import chart as make  # here, because a map that is given needs no JAX
+    from mckibben.model.extension import longest
+
     most = float(longest(muscle))
     low, high = SHORT * float(muscle.rest_length), LONG * most
     return make(muscle, length=(low, high), pressure=(0.0, top))

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 from collections.abc import Sequence
+from functools import cache
 from importlib.metadata import version
 from typing import TYPE_CHECKING, Any
 
@@ -107,8 +108,13 @@ def _about(plant: Plant, done: Driven, seen: dict[str, np.ndarray], method: str,
         "tolerance": float(tolerance), "steps": done.steps, "load": rig.load.kind,
         "supplied": float(plant.supplied), "atmosphere": float(plant.atmosphere), "temperature": float(plant.around),
         "assumed": ", ".join(assumed),
-        "mckibben_version": version("mckibben"),
+        "mckibben_version": _version(),
     }  # fmt: skip
+
+
+@cache
+def _version() -> str:
+    return version("mckibben")
 
 
 def _title(plant: Plant) -> str:

@@ -9,6 +9,7 @@ from functools import partial
 from multiprocessing import get_context
 from typing import Any
 
+import attrs
 import numpy as np
 
 from mckibben.motion.commands import Commands
@@ -82,7 +83,7 @@ def simulate_many(
     until: Any,
     *,
     chart: Any = None,
-    points: int = 501,
+    points: int = 101,
     tolerance: float = 1e-6,
     method: str = "LSODA",
     workers: int | None = None,
@@ -137,6 +138,8 @@ def _spread(
     run: Callable[..., Motion], rigs: list[Rig], maps: list[tuple[Any, ...]], workers: int, tell: Watch
 ) -> list[Motion]:
     """The rigs on several processes, in pieces that share their maps."""
+    fresh = {id(one): _fresh(one) for charts in maps for one in charts}
+    maps = [tuple(fresh[id(one)] for one in charts) for charts in maps]
     pieces = np.array_split(np.arange(len(rigs)), min(len(rigs), 8 * workers))
     found: list[Motion] = []
     # No fork: JAX has threads by now, which a forked process would wait for.
@@ -147,6 +150,11 @@ def _spread(
             found += one.result()
             tell(len(found), len(rigs))
     return found
+
+
+def _fresh(chart: Any) -> Any:
+    """A map without what it has compiled for itself, which does not travel."""
+    return attrs.evolve(chart) if attrs.has(type(chart)) else chart
 
 
 def _piece(run: Callable[..., Motion], first: int, rigs: list[Rig], maps: list[tuple[Any, ...]]) -> list[Motion]:

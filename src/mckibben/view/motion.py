@@ -80,7 +80,7 @@ def _lines(axes: Axes, motion: Motion, name: str, unit: str) -> None:
             motion.time, style.shown(values[:, k], unit), color=style.LINES[k], linewidth=1.2, label=label or None
         )
     axes.set_ylabel(style.axis_label(f"gauge {name}" if name == "pressure" else name, unit))
-    style.tidy(axes, legend="best")
+    style.tidy(axes, legend="upper left" if name == "pressure" else "best")
 
 
 def _commands(axes: Axes, motion: Motion) -> None:
