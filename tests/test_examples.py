@@ -173,6 +173,15 @@ def test_design_front(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: p
     assert (tmp_path / "out" / "design_front.png").stat().st_size > 10_000
 
 
+def test_chart_controller(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]) -> None:
+    error, *asked, solved, free = printed("chart_controller.py", tmp_path, monkeypatch, capsys)
+    assert error == pytest.approx([1.6, 296.3], abs=0.1)
+    expected = [[90.0, 2.185, 5.329], [100.0, 0.870, 2.636], [110.0, 0.487, 1.984]]
+    assert [row[1:] for row in asked] == [pytest.approx(row, abs=1.1e-3) for row in expected]
+    assert (solved, free[1:]) == ([pytest.approx(40.0, abs=0.01)], [pytest.approx(81.98, abs=0.011)])
+    assert (tmp_path / "out" / "chart.png").stat().st_size > 10_000
+
+
 def made_up() -> mk.Muscle:
     """The muscle that the points in bench.csv were made from."""
     return mk.presets.paper().replace("braid.angle", "36.2 deg").replace("chamber.law.c1", "12 kPa")

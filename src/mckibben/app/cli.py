@@ -9,11 +9,13 @@ from typing import Annotated
 
 import typer
 
+from mckibben.app import chart as commands_chart
 from mckibben.app import data as commands_data
 from mckibben.app import datasheet as commands_sheet
 from mckibben.app import design as commands_design
 from mckibben.app import draw as commands_draw
 from mckibben.app import effects as commands_effects
+from mckibben.app import export as commands_export
 from mckibben.app import fit as commands_fit
 from mckibben.app import look as commands_look
 from mckibben.app import reach as commands_reach
@@ -51,6 +53,8 @@ app.command(epilog=commands_design.EPILOG)(commands_design.design)
 app.command(epilog=commands_reach.LIMITS)(commands_reach.limits)
 app.command(epilog=commands_reach.WORKING_RANGE)(commands_reach.working_range)
 app.command(epilog=commands_reach.FORCE_MAP)(commands_reach.force_map)
+app.command(epilog=commands_chart.EPILOG)(commands_chart.chart)
+app.command(epilog=commands_export.EPILOG)(commands_export.export)
 app.command(epilog=commands_look.CHECK)(commands_look.check)
 app.command(epilog=commands_look.PRESETS)(commands_look.presets)
 app.add_typer(commands_data.data, name="data")

@@ -18,6 +18,7 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
     from mckibben.data.values import Data
+    from mckibben.potential.chart import Chart
     from mckibben.results.design import Designed
     from mckibben.results.fit import Fitted
     from mckibben.results.result import Result
@@ -47,9 +48,7 @@ class Kind(StrEnum):
 
 @command
 def plot(
-    file: Annotated[
-        Path, typer.Argument(metavar="FILE.nc", help="what mckibben run, fit or design saved with -o FILE.nc")
-    ],
+    file: Annotated[Path, typer.Argument(metavar="FILE.nc", help="what mckibben run, fit, design or chart saved")],
     output: Annotated[
         Path | None,
         typer.Option("--output", "-o", metavar="PICTURE", help=r"the picture: .png, .pdf or .svg \[default: FILE.png]"),
@@ -95,7 +94,7 @@ def plot(
         say(f"model less measured: {compare.compare(result, measured)}")
 
 
-def _figure(result: Result | Fitted | Designed, kind: Kind, measured: Data | None) -> Figure:
+def _figure(result: Result | Fitted | Designed | Chart, kind: Kind, measured: Data | None) -> Figure:
     import matplotlib
 
     matplotlib.use("Agg")  # draws to files only, without a window

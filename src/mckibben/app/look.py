@@ -196,6 +196,12 @@ def _content(file: Path) -> list[tuple[str, str]]:
             from mckibben.app import fitted
 
             return [("file", str(file)), *fitted.described(found)]
+        from mckibben.potential.chart import Chart
+
+        if isinstance(found, Chart):
+            from mckibben.app import charted
+
+            return [("file", str(file)), *charted.described(found)]
         from mckibben.app import designed
 
         return [("file", str(file)), *designed.described(found)]

@@ -1,4 +1,4 @@
-"""Opening what was saved, by the ending of its name and what is in it: a result, a fit, a design, or a sweep."""
+"""Opening what was saved, by the ending of its name and what is in it: a result, a fit, a design, a map, or a sweep."""
 
 from __future__ import annotations
 
@@ -13,19 +13,20 @@ if TYPE_CHECKING:
 
     from mckibben.designing.answer import Design
     from mckibben.fitting.answer import Fit
+    from mckibben.potential.chart import Chart
     from mckibben.results.result import Result
 
 __all__ = ["load"]
 
 
-def load(path: str | PathLike[str]) -> Result | Fit | Design | Dataset:
-    """The result, the fit or the design in an `.nc` file, equal to what was saved, or the sweep in a `.zarr` store.
+def load(path: str | PathLike[str]) -> Result | Fit | Design | Chart | Dataset:
+    """What is in an `.nc` file (a result, fit, design or map, equal to what was saved) or a `.zarr` store (a sweep).
 
     Args:
         path: the file or the store.
 
     Returns:
-        A `Result`, a `Fit` or a `Design`; for a sweep an xarray Dataset that is read from the disk when used.
+        A `Result`, a `Fit`, a `Design` or a `Chart`; for a sweep an xarray Dataset, read from the disk when used.
 
     Raises:
         SpecError: if there is nothing, or nothing that `save` or `sweep` wrote, or a file that is damaged.
@@ -40,9 +41,10 @@ def load(path: str | PathLike[str]) -> Result | Fit | Design | Dataset:
 
         return sweeps.load(path)
     found = store.load(path)
+    from mckibben.potential.chart import Chart
     from mckibben.results.result import Result
 
-    if isinstance(found, Result):
+    if isinstance(found, (Result, Chart)):
         return found
     from mckibben.results.fit import Fitted
 

@@ -103,10 +103,10 @@ def limits(muscle: Muscle, *, pressure: Any) -> Limits:
     P, bench = _value("pressure", pressure), Bench.of(muscle)
     longest = bench.longest if np.isfinite(bench.longest) else np.nan
     nothing = Limits(P, *(np.nan,) * 2, "", *(np.nan,) * 2, longest, *(np.nan,) * 2)
-    stable = _shorten(bench, P, shapes=False)
+    stable = shorten(bench, P, shapes=False)
     if stable.last is None:
         return attrs.evolve(nothing, shortest_cause=stable.cause.reason)
-    end = _shorten(bench, P, shapes=True)
+    end = shorten(bench, P, shapes=True)
     extremum = _force_extremum(bench, P, end)
     return attrs.evolve(
         nothing,
@@ -128,8 +128,8 @@ def _value(name: str, value: Any) -> float:
     return float(path.sample(1)[0])
 
 
-def _shorten(bench: Bench, pressure: float, shapes: bool) -> BranchEnd:
-    """From the initial length to where the braid has a tenth of its own."""
+def shorten(bench: Bench, pressure: float, shapes: bool) -> BranchEnd:
+    """Where good states end on the way from the initial length to where the braid has a tenth of its own."""
     H0, dead = float(bench.p.H0), float(bench.p.rest - bench.p.H0)
     start, middle, target = (Held.of(length=share * H0 + dead, pressure=pressure) for share in (1.0, 0.55, 0.1))
     return branch_end(bench.problem(SIZE, bench.placement(middle)), start, target, 1e-10, shapes)

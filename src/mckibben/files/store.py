@@ -1,4 +1,4 @@
-"""Saving and loading results, fits and designs by the ending of the file's name."""
+"""Saving and loading results, fits, designs and maps by the ending of the file's name."""
 
 from __future__ import annotations
 
@@ -10,6 +10,7 @@ from mckibben import disk
 from mckibben.spec.errors import SpecError
 
 if TYPE_CHECKING:
+    from mckibben.potential.chart import Chart
     from mckibben.results.design import Designed
     from mckibben.results.fit import Fitted
     from mckibben.results.result import Result
@@ -39,14 +40,15 @@ def check_output(path: str | PathLike[str], force: bool = False) -> None:
 
 
 def save(result: Any, path: str | PathLike[str], force: bool = False) -> Path:
-    """Save a result, a fit or a design: `.nc` keeps everything and can be loaded again, `.csv` is a table.
+    """Save a result, a fit, a design or a map: `.nc` keeps everything and can be loaded again, `.csv` is a table.
 
     A table holds nothing but its head and its rows, which are states, of a fit the measured points with their
-    residuals, of a design its front; what was computed and by what is in a text file beside it ("out.csv.txt").
+    residuals, of a design its front, of a map a grid; what was computed and by what is in a text file beside it
+    ("out.csv.txt").
 
     Args:
-        result: what `run`, `solve`, `fit` or `design` gave. Of a `State` its `result` is saved, and that is what `load`
-            gives.
+        result: what `run`, `solve`, `fit`, `design` or `chart` gave. Of a `State` its `result` is saved, and that is
+            what `load` gives.
         path: the file; its ending says the format. It is written whole or not at all.
         force: replace a file that is there already.
 
@@ -72,6 +74,12 @@ def save(result: Any, path: str | PathLike[str], force: bool = False) -> Path:
             from mckibben.files import fits
 
             return (fits.save if whole else fits.save_csv)(result, path, force)
+        from mckibben.potential.chart import Chart
+
+        if isinstance(result, Chart):
+            from mckibben.files import charts
+
+            return (charts.save if whole else charts.save_csv)(result, path, force)
         from mckibben.files import designs
 
         return (designs.save if whole else designs.save_csv)(result, path, force)
@@ -84,26 +92,27 @@ def save(result: Any, path: str | PathLike[str], force: bool = False) -> Path:
     return table.save_csv(result, path, force)
 
 
-def _result(given: Any) -> Result | Fitted | Designed:
+def _result(given: Any) -> Result | Fitted | Designed | Chart:
+    from mckibben.potential.chart import Chart
     from mckibben.results.design import Designed
     from mckibben.results.fit import Fitted
     from mckibben.results.result import Result, State
 
     if isinstance(given, State):
         return given.result
-    if isinstance(given, (Result, Fitted, Designed)):
+    if isinstance(given, (Result, Fitted, Designed, Chart)):
         return given
     if hasattr(given, "to_netcdf"):
         raise SpecError(
             "save",
-            allowed="takes what run, solve, fit or design gave",
+            allowed="takes what run, solve, fit, design or chart gave",
             advice='write a Dataset with data.to_netcdf("x.nc")',
         )
-    raise SpecError("save", given, "must be what run, solve, fit or design gave")
+    raise SpecError("save", given, "must be what run, solve, fit, design or chart gave")
 
 
-def load(path: str | PathLike[str]) -> Result | Fitted | Designed:
-    """The result, the fit or the design in an `.nc` file. SpecError for any other file, or one that is not whole."""
+def load(path: str | PathLike[str]) -> Result | Fitted | Designed | Chart:
+    """The result, fit, design or map in an `.nc` file. SpecError for any other file, or one that is not whole."""
     if Path(path).suffix.lower() == ".csv":
         raise SpecError(str(path), allowed="is a table only", advice="save results as .nc to load them again")
     if Path(path).suffix.lower() == ".zarr":
@@ -119,6 +128,10 @@ def load(path: str | PathLike[str]) -> Result | Fitted | Designed:
         from mckibben.files import designs
 
         return designs.of(stored, str(path))
+    if hdf5.kind(stored) == "chart":
+        from mckibben.files import charts
+
+        return charts.of(stored, str(path))
     return netcdf.of(stored, str(path))
 
 
@@ -128,6 +141,6 @@ def load_result(path: str | PathLike[str]) -> Result:
     from mckibben.results.result import Result
 
     if not isinstance(found, Result):
-        what = "fit" if hasattr(found, "residuals") else "design"
+        what = "fit" if hasattr(found, "residuals") else "map" if hasattr(found, "free_length") else "design"
         raise SpecError(str(path), allowed=f"holds a {what}, not a result", advice="open it with mckibben.load")
     return found

@@ -10,6 +10,7 @@ from typing import Any
 from matplotlib.figure import Figure
 
 from mckibben.data.values import Data
+from mckibben.potential.chart import Chart
 from mckibben.results.design import Designed
 from mckibben.results.effects import Effects
 from mckibben.results.fit import Fitted
@@ -89,6 +90,10 @@ def _design(design: Designed) -> str:
     return _part(repr(design).strip("<>"), tables, design.notes) + _image(plot(design), "the design")
 
 
+def _chart(chart: Chart) -> str:
+    return _part(repr(chart).strip("<>"), _frame(chart.summary), chart.notes) + _image(plot(chart), "the map")
+
+
 def _tolerances(found: Tolerances) -> str:
     tables = _frame(found.spread) + _frame(found.table)
     return _part(repr(found).strip("<>"), tables, found.notes) + _image(plot(found), "tolerances")
@@ -112,7 +117,7 @@ def _data(data: Data) -> str:
 
 _KINDS: dict[Any, Callable[[Any], str]] = {
     Muscle: _muscle, Result: _result, State: _state, Fitted: _fit, Designed: _design, Tolerances: _tolerances,
-    Sensitivity: _sensitivity, Effects: _effects, Data: _data, tuple(TESTS.values()): _test,
+    Sensitivity: _sensitivity, Effects: _effects, Data: _data, Chart: _chart, tuple(TESTS.values()): _test,
     spec_classes(): _part_of_muscle,
 }  # fmt: skip
 """What shows each kind of value."""

@@ -8,6 +8,7 @@ from typing import Any
 from matplotlib.figure import Figure
 
 from mckibben.data.values import Data
+from mckibben.potential.chart import Chart
 from mckibben.results.design import Designed
 from mckibben.results.effects import Effects
 from mckibben.results.fit import Fitted
@@ -18,6 +19,7 @@ from mckibben.spec import BlockedForce, FreeContraction, Path, Protocol
 from mckibben.spec.errors import SpecError, nearest
 from mckibben.units import show
 from mckibben.view import curves, maps, style
+from mckibben.view.chart import charted
 from mckibben.view.design import designed
 from mckibben.view.effects import bars
 from mckibben.view.fit import fitted
@@ -35,11 +37,11 @@ KINDS: dict[str, Callable[[Result], Figure]] = {
     "shares": curves.shares,
 }
 """The pictures of a result."""
-_TAKES = "a result of run, solve, fit, design, sensitivity, tolerances, effects, force_map or working_range"
+_TAKES = "a result of run, solve, fit, design, chart, sensitivity, tolerances, effects, force_map or working_range"
 
 
 def plot(result: Any, kind: str = "auto", data: Any = None) -> Figure:
-    """Draw what `run`, `solve`, `load`, `fit`, `design`, `sensitivity`, `tolerances`, `effects` or a map gave.
+    """Draw what `run`, `solve`, `load`, `fit`, `design`, `chart`, `sensitivity`, `tolerances`, `effects` or a map gave.
 
     Nothing is solved.
 
@@ -50,7 +52,7 @@ def plot(result: Any, kind: str = "auto", data: Any = None) -> Figure:
     force map as contours over length and pressure, a working range as the region in that plane, a sensitivity as a
     tornado chart, tolerances as distributions with the part of each number, effects as bars, a fit as its forces over
     the measured ones, with what is left, a design as the force of the best over its contraction with what was demanded,
-    or as its front.
+    or as its front, a map that `chart` made as its forces over contraction, and over the range with its edges.
 
     Args:
         result: what one of these calls gave, or several results of one kind of test by their names, as
@@ -89,6 +91,7 @@ def plot(result: Any, kind: str = "auto", data: Any = None) -> Figure:
         return _family(result, kind)
     own: dict[type, Callable[[Any], Figure]] = {
         Sensitivity: tornado, Tolerances: scatter, Effects: bars, Fitted: fitted, Designed: designed,
+        Chart: charted,
     }  # fmt: skip
     draw = next((draw for kinds, draw in own.items() if isinstance(result, kinds)), None) or _of_dataset(result)
     if kind != "auto":

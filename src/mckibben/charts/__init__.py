@@ -1,0 +1,1 @@
+"""Making the map of a muscle."""

@@ -1,0 +1,1 @@
+"""A map of a muscle as numbers: one potential of length and pressure, and what is read off it."""
