@@ -56,12 +56,10 @@ docs: setup
 	$(BIN)/python -m sphinx -W --keep-going -q -b html docs docs/_build/html
 	@echo "docs/_build/html/index.html"
 
-# Agg: an example never waits for a window to be closed.
+# Two at a time, each told whole. Agg: an example never waits for a window to be closed.
 examples: setup
-	@set -e; for script in examples/*.py; do \
-		echo "== $$script"; \
-		MPLBACKEND=Agg $(BIN)/python "$$script"; \
-	done
+	@ls examples/*.py | MPLBACKEND=Agg xargs -P 2 -n 1 sh -c \
+		'said=$$($(BIN)/python "$$0" 2>&1); code=$$?; printf "== %s\n%s\n" "$$0" "$$said"; exit $$code'
 
 bench: setup # with nothing compiled yet, so that cold is cold
 	rm -rf out/compiled

@@ -30,23 +30,22 @@ def trust_constr() -> list[float]:
         length, pressure = targets_of((held,), on.unit, on.loads)[0]
 
         def energy(u: np.ndarray, pressure: float = pressure) -> float:
-            totals = on.evaluate(u).totals
+            totals = on.balance(u).totals
             return float(totals[0] - pressure * totals[VOLUME])
 
         def slope(u: np.ndarray, pressure: float = pressure) -> np.ndarray:
-            gradients = np.asarray(on.evaluate(u).gradients)
+            gradients = np.asarray(on.balance(u).gradients)
             return np.asarray(gradients[0] - pressure * gradients[VOLUME])
 
         def bend(u: np.ndarray, pressure: float = pressure) -> np.ndarray:
-            tangents = np.asarray(on.evaluate(u).tangents)
-            return np.asarray(tangents[0] - pressure * tangents[VOLUME])
+            return on.curvature(u, np.array([1.0, 0.0, -pressure, 0.0]))
 
         holding = NonlinearConstraint(
-            lambda u: np.asarray(on.evaluate(u).totals)[LENGTH],
+            lambda u: np.asarray(on.balance(u).totals)[LENGTH],
             length,
             length,
-            jac=lambda u: np.asarray(on.evaluate(u).gradients)[LENGTH],
-            hess=lambda u, v: v[0] * np.asarray(on.evaluate(u).tangents)[LENGTH],
+            jac=lambda u: np.asarray(on.balance(u).gradients)[LENGTH],
+            hess=lambda u, v: v[0] * on.curvature(u, np.array([0.0, 1.0, 0.0, 0.0])),
         )
         options = {"gtol": 1e-8, "xtol": 1e-10, "maxiter": 500}
         found = minimize(energy, u, jac=slope, hess=bend, method="trust-constr", constraints=holding, options=options)

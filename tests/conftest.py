@@ -16,7 +16,10 @@ os.environ["MPLBACKEND"] = "Agg"
 os.environ.setdefault("MCKIBBEN_CACHE", str(CACHE))
 os.environ.setdefault("MCKIBBEN_COMPILE", "quick")
 # So does what tests compile by `jax.jit` themselves (compiled/options.py says more of these).
-os.environ.setdefault("XLA_FLAGS", "--xla_backend_optimization_level=0 --xla_cpu_use_fusion_emitters=false")
+os.environ.setdefault(
+    "XLA_FLAGS",
+    "--xla_backend_optimization_level=0 --xla_cpu_use_fusion_emitters=false --xla_cpu_parallel_codegen_split_count=1",
+)
 
 from beartype import BeartypeConf, beartype
 from hypothesis import HealthCheck, settings

@@ -18,11 +18,11 @@ from mckibben.solver.find import find
 from mckibben.solver.follow import follow
 from mckibben.solver.held import Held
 from mckibben.solver.path import trace
-from mckibben.solver.problem import evaluate, setting
+from mckibben.solver.problem import balance, curvature, setting
 
 pytestmark = pytest.mark.compiled
 
-COMPILED = (setting, evaluate, follow, read_many, crowdings)
+COMPILED = (setting, balance, curvature, follow, read_many, crowdings)
 REFERENCE = mk.presets.reference()
 SIZE, OWN = 24, 7
 """Unknowns: the usual number, and one of these tests' own that no other test has compiled before."""
@@ -72,8 +72,8 @@ def test_a_choice_compiles_anew(choice: str, caplog: pytest.LogCaptureFixture) -
     with jax.log_compiles(), caplog.at_level(logging.WARNING):
         assert find(bench.problem(OWN, bench.placement(held)), held).converged
     grown = {function for function, a, b in zip(COMPILED, before, counts(), strict=True) if b > a}
-    assert grown == {setting, evaluate, crowdings} - ({crowdings} if choice == "ends" else set())
-    assert any("evaluate" in message for message in caplog.messages)
+    assert grown == {setting, balance, curvature, crowdings} - ({crowdings} if choice == "ends" else set())
+    assert any("curvature" in message for message in caplog.messages)
 
 
 @pytest.mark.parametrize(

@@ -26,7 +26,7 @@ from mckibben.compiled.rows import filled
 from mckibben.solver.bench import Bench
 from mckibben.solver.find import find
 from mckibben.solver.held import Held
-from mckibben.solver.problem import evaluate, setting
+from mckibben.solver.problem import balance, curvature, setting
 
 OWN = 5
 """Unknowns that no other test has compiled before."""
@@ -218,7 +218,7 @@ def test_ahead_and_at_once(tmp_path: Path) -> None:
 @pytest.fixture
 def sought(tmp_path: Path) -> tuple[Path, Held, Bench]:
     """With nothing in memory."""
-    for function in (setting, evaluate):
+    for function in (setting, balance, curvature):
         function.clear_cache()
     return tmp_path / "kernels", Held.of(length=0.09, pressure=5e4), Bench.of(mk.presets.reference())
 
@@ -235,8 +235,8 @@ def test_kept_and_plain_agree(sought: tuple[Path, Held, Bench]) -> None:
     assert kept_there.force == pytest.approx(plain.force, rel=1e-11)
     problem, us = plain.problem, np.stack([plain.u, 0.5 * plain.u])
     with keeping(place):
-        both = jax.vmap(lambda u: evaluate(problem.basis, problem.p, problem.b, u).totals)(us)
-    one = evaluate(problem.basis, problem.p, problem.b, us[1])
+        both = jax.vmap(lambda u: balance(problem.basis, problem.p, problem.b, u).totals)(us)
+    one = balance(problem.basis, problem.p, problem.b, us[1])
     assert np.asarray(both[1]) == pytest.approx(np.asarray(one.totals), rel=1e-12)
 
 
@@ -247,7 +247,7 @@ def test_an_executable_of_something_else_is_dropped(
     place, held, bench = sought
     with keeping(place):
         right = find(bench.problem(OWN, 2.0), held)
-        file, other = next(place.glob("setting-*")), next(place.glob("evaluate-*"))
+        file, other = next(place.glob("setting-*")), next(place.glob("balance-*"))
         size = file.stat().st_size
         for wrong in ("renamed", "forged", "exchanged"):
             if wrong == "renamed":
@@ -258,7 +258,7 @@ def test_an_executable_of_something_else_is_dropped(
                 contents = kernels.kept.read(file), kernels.kept.read(other)
                 kernels.kept.write(file, contents[1])
                 kernels.kept.write(other, contents[0])
-                evaluate.clear_cache()
+                balance.clear_cache()
             setting.clear_cache()
             assert find(bench.problem(OWN, 2.0), held).force == pytest.approx(right.force, rel=1e-11)
             assert abs(file.stat().st_size - size) < 500  # made anew
@@ -306,8 +306,8 @@ def test_how_scripts_compile(text: str, monkeypatch: pytest.MonkeyPatch) -> None
 
 
 def test_a_kernel_is_known_by_its_name() -> None:
-    assert pickle.loads(pickle.dumps(evaluate)) is evaluate
-    assert isinstance(evaluate, Kernel)
+    assert pickle.loads(pickle.dumps(balance)) is balance
+    assert isinstance(balance, Kernel)
 
 
 @pytest.mark.skipif(os.name != "posix", reason="other systems have no such permissions")

@@ -18,8 +18,9 @@ OPTIONS: Options = {
 }
 """With the former emitters of loops XLA compiles in two thirds of the time, to faster code. No work is divided among
 threads: the same bits come out on one core and on many."""
-QUICK: Options = OPTIONS | {"xla_backend_optimization_level": 0}
-"""For few calls: half the time to compile again, three times the time to run."""
+QUICK: Options = OPTIONS | {"xla_backend_optimization_level": 0, "xla_cpu_parallel_codegen_split_count": 1}
+"""For few calls: half the time to compile again, three times the time to run. So little is left for the
+last stage of the compiler that dividing it among threads takes longer than doing it."""
 
 
 def usual() -> Options:

@@ -45,7 +45,8 @@ def _minimum(
     if problem.basis.closes:
         constraints.append((CLOSURE, 0.0))
     task = Task(
-        evaluate=problem.evaluate,
+        evaluate=problem.balance,
+        curvature=problem.curvature,
         loads=loads,
         held=tuple(k for k, _ in constraints),
         targets=np.array([target for _, target in constraints]),

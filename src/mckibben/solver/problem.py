@@ -23,12 +23,11 @@ __all__ = [
     "CLOSURE",
     "LENGTH",
     "VOLUME",
-    "Assembly",
     "Balance",
     "Basis",
     "Problem",
     "balance",
-    "evaluate",
+    "curvature",
     "setting",
     "slopes",
 ]
@@ -38,45 +37,17 @@ Basis = Line | Spline
 LENGTH, VOLUME, CLOSURE = (QUANTITIES.index(name) for name in ("length", "volume", "closure"))
 
 
-class Assembly(NamedTuple):
-    """The four quantities at unknowns u, dimensionless, with their derivatives by the unknowns."""
+class Balance(NamedTuple):
+    """The four quantities at unknowns u, dimensionless, with their gradients."""
 
     theta: Float[Array, " q"]  #: braid angle at the points [rad]
     totals: Float[Array, "4"]
     gradients: Float[Array, "4 m"]
-    tangents: Float[Array, "4 m m"]
 
 
 @partial(kernel, often=True)
-def evaluate(basis: Basis, p: Parameters, b: Number, u: Float[Array, " m"]) -> Assembly:
-    """Each quantity as a Lagrangian of its own: the energy alone, then with one load of -1 each and no energy."""
-    on = place(basis, p, b)
-
-    def one(share: Array, loads: Array) -> tuple[Array, Array, Array]:
-        local = localise(basis, on, Unknowns(u, loads), share)
-        s = assemble(basis, on, local, 3)
-        return local.value.sum(), s.rest, s.stiffness
-
-    shares, loads = jnp.array([1.0, 0.0, 0.0, 0.0]), jnp.concatenate([jnp.zeros((1, 3)), -jnp.eye(3)])
-    return Assembly(braid_angle(basis, on, u), *jax.vmap(one)(shares, loads))
-
-
-def braid_angle(basis: Basis, on: Placed, u: Array) -> Float[Array, " q"]:
-    """theta at the points."""
-    return radians(basis.form.point(variables(basis, on, u), on.p).theta)
-
-
-class Balance(NamedTuple):
-    """What of an `Assembly` tells whether a state is one: all but the second derivatives."""
-
-    theta: Float[Array, " q"]
-    totals: Float[Array, "4"]
-    gradients: Float[Array, "4 m"]
-
-
-@kernel
 def balance(basis: Basis, p: Parameters, b: Number, u: Float[Array, " m"]) -> Balance:
-    """By plain differentiation of the totals, which takes a quarter of the time of `evaluate` to compile."""
+    """By plain differentiation of the totals."""
     on = place(basis, p, b)
     weights = jnp.asarray(basis.operators().weights) * on.jacobian
 
@@ -88,6 +59,15 @@ def balance(basis: Basis, p: Parameters, b: Number, u: Float[Array, " m"]) -> Ba
 
     gradients, (theta, found) = jax.jacrev(totals, has_aux=True)(u)
     return Balance(theta, found, gradients)
+
+
+@partial(kernel, often=True)
+def curvature(
+    basis: Basis, p: Parameters, b: Number, u: Float[Array, " m"], shares: Float[Array, "4"]
+) -> Float[Array, "m m"]:  # fmt: skip
+    """Second derivatives of shares of the four quantities together: of the Lagrangian these are 1, -F, -P and -M."""
+    on = place(basis, p, b)
+    return assemble(basis, on, localise(basis, on, Unknowns(u, -shares[1:]), shares[0]), 3).stiffness
 
 
 class Setting(NamedTuple):
@@ -154,13 +134,13 @@ class Problem:
         """How many loads are unknowns: force, pressure and, where equal end radii are a condition, closing moment."""
         return 3 if self.basis.closes else 2
 
-    def evaluate(self, u: np.ndarray) -> Assembly:
-        """The four dimensionless quantities and their derivatives."""
-        return Assembly(*map(np.asarray, evaluate(self.basis, self.p, self.b, u)))
-
     def balance(self, u: np.ndarray) -> Balance:
-        """The four dimensionless quantities and their gradients: for a look at a state, not for a search."""
+        """The four dimensionless quantities and their gradients."""
         return Balance(*map(np.asarray, balance(self.basis, self.p, self.b, u)))
+
+    def curvature(self, u: np.ndarray, shares: np.ndarray) -> np.ndarray:
+        """Second derivatives by the unknowns of the four quantities, added up in shares."""
+        return np.asarray(curvature(self.basis, self.p, self.b, u, shares))
 
     def moved(self, du: np.ndarray) -> float:
         """Largest change of psi [rad] at the points by a change of the unknowns."""

@@ -2,7 +2,8 @@
 
 Sequential quadratic programming (Byrd-Omojokun): a normal step towards the constraints, an exact trust-region step in
 their null space, an l1 merit with second-order correction; Newton on the KKT system finishes. It knows no mechanics:
-it sees totals, gradients and tangents of a few quantities, the first of which is minimised.
+it sees totals and gradients of a few quantities, the first of which is minimised, and where it stands, not where it
+tries, their second derivatives added up.
 """
 
 from collections.abc import Callable
@@ -31,7 +32,7 @@ def imbalance(signs: Floats, gradients: Floats) -> float:
 
 
 class Derivatives(Protocol):
-    """A field at the points that must stay in bounds, totals (k), gradients (k, m) and tangents (k, m, m)."""
+    """A field at the points that must stay in bounds, totals (k) and gradients (k, m)."""
 
     @property
     def theta(self) -> Any: ...
@@ -39,8 +40,6 @@ class Derivatives(Protocol):
     def totals(self) -> Any: ...
     @property
     def gradients(self) -> Any: ...
-    @property
-    def tangents(self) -> Any: ...
 
 
 @attrs.frozen
@@ -48,6 +47,7 @@ class Task:
     """Minimise total 0 minus loads times the other totals, with some of those held at targets."""
 
     evaluate: Callable[[Floats], Derivatives]
+    curvature: Callable[[Floats, Floats], Floats]  #: (u, shares (k)) -> second derivatives (m, m) of shares of all
     loads: Floats  #: multiplier of each quantity (k); that of quantity 0 is unused, those of held ones are the guess
     held: tuple[int, ...]  #: quantities held
     targets: Floats  #: their values
@@ -77,7 +77,7 @@ def minimise(task: Task, u: Floats, radius: float = 1.0, limit: int = 200, toler
     start = _Point.at(task, u, inverse, task.loads)
     if start is None:
         return Minimum(u, task.loads, False, np.inf, 1, UNDEFINED, task.evaluate(u).totals)
-    point, penalty = start, 0.0
+    point, hessian, penalty = start, start.hessian(task, inverse), 0.0
     for count in range(1, limit + 1):
         if point.residual < 1e-6 or radius < 1e-9:
             finished = polish(task, point.u, point.loads, tolerance, count)
@@ -85,7 +85,7 @@ def minimise(task: Task, u: Floats, radius: float = 1.0, limit: int = 200, toler
                 return finished
             if radius < 1e-9:
                 return attrs.evolve(finished, message="the search stalled")
-        step, model_gain, normal_gain = _step(point, radius)
+        step, model_gain, normal_gain = _step(point, hessian, radius)
         violation = float(np.abs(point.c).sum())
         if normal_gain > 0.0:
             steep = float(np.abs(point.multipliers).max()) + 1e-3
@@ -103,12 +103,13 @@ def minimise(task: Task, u: Floats, radius: float = 1.0, limit: int = 200, toler
             if again is not None and gain > actual:
                 trial, actual = again, gain
         length = float(np.linalg.norm(step))
-        if trial is None or actual < 1e-4 * predicted:
-            if trial is not None and predicted < 1e-14 * point.scale:  # rounding: nothing left to gain
-                return polish(task, trial.u, trial.loads, tolerance, count)
+        if trial is not None and actual < 1e-4 * predicted < 1e-18 * point.scale:  # rounding: nothing left to gain
+            return polish(task, trial.u, trial.loads, tolerance, count)
+        bent = None if trial is None or actual < 1e-4 * predicted else trial.hessian(task, inverse)
+        if trial is None or bent is None or not np.isfinite(bent).all():
             radius = 0.25 * min(radius, length)
             continue
-        point = trial
+        point, hessian = trial, bent
         if task.largest_change(point.u - u) > task.leash:
             return Minimum(point.u, point.loads, False, point.residual, count, "nothing near the start", point.totals)
         if actual > 0.75 * predicted and length > 0.8 * radius:
@@ -126,7 +127,6 @@ class _Point:
     u: Floats
     value: float
     gradient: Floats
-    hessian: Floats
     A: Floats
     c: Floats
     multipliers: Floats
@@ -152,12 +152,15 @@ class _Point:
         loads = loads.copy()
         loads[held] = multipliers
         signs = np.concatenate([[1.0], -loads[1:]])
-        hessian = inverse.T @ np.einsum("k,kmn->mn", signs, np.asarray(d.tangents)) @ inverse
         magnitude = float(np.abs(totals) @ np.abs(np.concatenate([[1.0], loads[1:]])))
         value = float(totals[0] - loads[free] @ totals[free])
         c = totals[held] - task.targets
         residual = max(imbalance(signs, gradients), float(np.abs(c).max(initial=0.0)))
-        return cls(u, value, gradient, hessian, A, c, multipliers, loads, residual, magnitude + 1e-300, totals)
+        return cls(u, value, gradient, A, c, multipliers, loads, residual, magnitude + 1e-300, totals)
+
+    def hessian(self, task: Task, inverse: Floats) -> Floats:
+        """Of the Lagrangian."""
+        return np.asarray(inverse.T @ task.curvature(self.u, np.concatenate([[1.0], -self.loads[1:]])) @ inverse)
 
 
 def _trial(
@@ -166,12 +169,12 @@ def _trial(
     """The point after a step and the actual decrease of the merit; None where the energy is not defined."""
     u = point.u + du
     trial = _Point.at(task, u, inverse, point.loads)
-    if trial is None or not np.isfinite(trial.value) or not np.isfinite(trial.hessian).all():
+    if trial is None or not np.isfinite(trial.value):
         return None, -np.inf
     return trial, point.value - trial.value + penalty * (violation - float(np.abs(trial.c).sum()))
 
 
-def _step(point: _Point, radius: float) -> tuple[Floats, float, float]:
+def _step(point: _Point, hessian: Floats, radius: float) -> tuple[Floats, float, float]:
     """A step within the radius, the decrease of the quadratic model and that of the constraints' violation."""
     if point.A.size:
         normal = -np.linalg.lstsq(point.A, point.c, rcond=None)[0]
@@ -180,10 +183,10 @@ def _step(point: _Point, radius: float) -> tuple[Floats, float, float]:
     else:
         normal, q = np.zeros_like(point.u), np.eye(len(point.u))
     left = float(np.sqrt(max(radius**2 - float(normal @ normal), 0.0)))
-    reduced = q.T @ (point.gradient + point.hessian @ normal)
-    tangential = trust_region_step(q.T @ point.hessian @ q, reduced, left)
+    reduced = q.T @ (point.gradient + hessian @ normal)
+    tangential = trust_region_step(q.T @ hessian @ q, reduced, left)
     step = normal + q @ tangential
-    gain = -(point.gradient @ step + 0.5 * step @ point.hessian @ step)
+    gain = -(point.gradient @ step + 0.5 * step @ hessian @ step)
     violation = float(np.abs(point.c).sum())
     return step, float(gain), violation - float(np.abs(point.c + point.A @ step).sum())
 
@@ -244,7 +247,7 @@ def polish(task: Task, u: Floats, loads: Floats, tolerance: float, count: int, l
                 break
         elif best.converged or not np.isfinite(residual) or k > 6:
             break
-        hessian = np.einsum("k,kmn->mn", signs, np.asarray(d.tangents))
+        hessian = task.curvature(u, signs)
         A = gradients[held]
         system = np.block([[hessian, -A.T], [A, np.zeros((len(held), len(held)))]])
         try:
