@@ -33,7 +33,7 @@ BEYOND = 'test.length="130 mm"'
 """Every state lies beyond full extension, so that nothing is compiled: fast."""
 COMMANDS = (
     "run", "sweep", "limits", "working-range", "force-map", "check", "presets", "data check", "plot",
-    "view", "reproduce", "info",
+    "view", "reproduce", "info", "simulate",
 )  # fmt: skip
 
 

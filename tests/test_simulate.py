@@ -3,8 +3,10 @@
 Most muscles here are maps in closed form: a vessel of constant volume beside a spring, and the textbook cylinder.
 """
 
+import json
 import math
 from collections.abc import Callable
+from pathlib import Path
 from typing import NamedTuple
 
 import attrs
@@ -492,3 +494,55 @@ def test_times_outside_of_the_map_are_told() -> None:
     assert motion.complete
     assert not motion.inside
     assert any("outside of its map" in note for note in motion.notes)
+
+
+def test_the_command_simulates_saves_and_draws(tmp_path: Path) -> None:
+    """From the rig file to what is saved, with a map from a file; and the picture of a pair."""
+    from typer.testing import CliRunner
+
+    from mckibben.app.cli import app
+
+    chart = tmp_path / "chart.nc"
+    mk.save(mk.chart(M, length="60 mm to 115 mm", pressure="0 to 2 bar"), chart)
+    (tmp_path / "command.csv").write_text("t [s];command\n0;1\n0.2;1\n0.6;-1\n", encoding="utf-8")
+    text = (Path(__file__).parent.parent / "examples" / "rig.toml").read_text(encoding="utf-8")
+    rig = tmp_path / "rig.toml"
+    rig.write_text(text.partition("[command]")[0] + '[command]\nkind = "csv"\nfile = "command.csv"\n', encoding="utf-8")
+    call = ["simulate", str(rig), "--chart", str(chart), "--set", "until=0.5 s", "--set", "load.mass=1 kg"]
+    done = CliRunner().invoke(app, [*call, "-o", str(tmp_path / "m.nc"), "--plot", str(tmp_path / "m.png")])
+    assert done.exit_code == 0, done.output
+    assert "left the high end stop" in done.stdout
+    motion = mk.load(tmp_path / "m.nc")
+    assert isinstance(motion, mk.Motion)
+    assert motion.rig.load.mass == 1.0
+    assert motion == mk.simulate(motion.rig, until="0.5 s", chart=mk.load(chart))
+    assert motion.notes[0].startswith("the forces are those of a map, good to 0.0")
+    assert float(np.abs(motion.of("balance")).max()) < 1e-4 * motion.of("enthalpy").max()
+    table = mk.save(motion, tmp_path / "m.csv").read_text(encoding="utf-8").splitlines()
+    assert table[0].startswith("time [s],length [m],speed [m/s]")
+    assert len(table) == 502
+    described = CliRunner().invoke(app, ["info", str(tmp_path / "m.nc")])
+    assert 'the motion of "paper" with 1 kg' in described.stdout
+    told = json.loads(CliRunner().invoke(app, [*call, "--json"]).stdout)
+    assert told["complete"]
+    assert told["values"]["length"]["last"] == motion.length[-1]
+    wrong = CliRunner().invoke(app, [*call, "--set", "until=2 s"])
+    assert wrong.exit_code == 2
+    assert wrong.stderr == (
+        "mckibben: rig.command: ends at 0.6 s, before the simulation does, at 2 s; "
+        "give it values to the end, or simulate less\n"
+    )
+    rig.write_text(text.replace('kind = "pwm"', 'kind = "pwn"'), encoding="utf-8")
+    assert 'did you mean "pwm"?' in CliRunner().invoke(app, call).stderr
+
+
+def test_a_pair_is_drawn_shown_and_summed_up() -> None:
+    pid = mk.PID(of="angle", target="5 deg", kp=6.0)
+    motion = mk.simulate(attrs.evolve(PAIR, command=pid), until="0.2 s", chart=Cylinder(), points=21)
+    axes = mk.plot(motion).axes
+    assert [one.get_ylabel() for one in axes[:4]] == [
+        "Angle (deg)", "Gauge pressure (bar)", "Force (N)", "Air taken (normal L)",
+    ]  # fmt: skip
+    assert [line.get_label() for line in axes[0].lines] == ["angle", "target"]
+    assert {"angle", "force of the agonist", "force of the antagonist"} <= set(motion.summary().index)
+    assert "data:image/png" in motion._repr_html_()
