@@ -45,9 +45,9 @@ class Balance(NamedTuple):
     gradients: Float[Array, "4 m"]
 
 
-@partial(kernel, often=True)
+@kernel
 def balance(basis: Basis, p: Parameters, b: Number, u: Float[Array, " m"]) -> Balance:
-    """By plain differentiation of the totals."""
+    """By plain differentiation of the totals, as quick when compiled with the least optimisation."""
     on = place(basis, p, b)
     weights = jnp.asarray(basis.operators().weights) * on.jacobian
 
