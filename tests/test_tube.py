@@ -107,15 +107,6 @@ def test_radius_of_the_centre_lines() -> None:
         assert caught.value.field == f"centre_radius.{field}"
 
 
-@pytest.mark.spec
-def test_gas_beside_rubber_is_refused() -> None:
-    step = mk.Step(length="90 mm", gas="isothermal")
-    assert step.as_steps(WALL) == (step,)
-    for test in (step, mk.Protocol(steps=[step])):
-        with pytest.raises(mk.SpecError, match="rubber lies inside"):
-            test.as_steps(MUSCLE)
-
-
 @pytest.mark.experiments
 def test_what_check_shows() -> None:
     shown = {name: value for name, value, _ in foresee.derived(MUSCLE)}

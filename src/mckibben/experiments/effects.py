@@ -40,6 +40,7 @@ EFFECTS = (
     Effect("roll at the crossings", "braid.joint", "pin", "hinge", 'braid.joint = "pin"'),
     Effect("wall inside the braid", "chamber.lies", "inside", "outside", 'chamber.lies = "inside"'),
     Effect("thickness of the wall", "chamber.wall", "thick", "thin", 'chamber.wall = "thick"'),
+    Effect("gap between tube and braid", "chamber.gap", True, False, "chamber.gap = true"),
     Effect(
         "fittings that give way", "fittings", Fittings(compliance=_COMPLIANCE), None,
         f'fittings.compliance = "{_COMPLIANCE}"', assumed=True,
@@ -56,9 +57,10 @@ EFFECTS = (
 def effects(muscle: Muscle, *, length: Any = None, contraction: Any = None, pressure: Any) -> Effects:
     """The size of each effect for a muscle at a length and pressure: solved with it and without, nothing guessed.
 
-    Stretch and roll of the fibres, where the wall lies and how thick it is, fittings that give way, friction, and the
-    ends. What a muscle already has is switched off for the comparison; the rest is switched on, one by one. Friction
-    has no one state: what is told is half of what lies between the forces as the muscle lengthens and as it shortens.
+    Stretch and roll of the fibres, where the wall lies and how thick it is, a gap between tube and braid, fittings that
+    give way, friction, and the ends. What a muscle already has is switched off for the comparison; the rest is switched
+    on, one by one. Friction has no one state: what is told is half of what lies between the forces as the muscle
+    lengthens and as it shortens.
 
     Args:
         muscle: the specification.

@@ -16,6 +16,7 @@ from mckibben.discretise.fields import Placed, place, variables
 from mckibben.discretise.spectral import Line
 from mckibben.model.angle import radians
 from mckibben.model.energy import QUANTITIES, stored, works
+from mckibben.model.gap import inflated, leaves
 from mckibben.model.parameters import Number, Parameters
 from mckibben.solver.system import Unknowns, assemble, localise
 
@@ -48,12 +49,16 @@ class Assembly(NamedTuple):
 
 
 @partial(kernel, often=True)
-def evaluate(basis: Basis, p: Parameters, b: Number, u: Float[Array, " m"]) -> Assembly:
-    """Each quantity as a Lagrangian of its own: the energy alone, then with one load of -1 each and no energy."""
+def evaluate(basis: Basis, p: Parameters, b: Number, u: Float[Array, " m"], pressure: Any = None) -> Assembly:
+    """Each quantity as a Lagrangian of its own: the energy alone, then with one load of -1 each and no energy.
+
+    With a chamber that may leave the braid the energy is that of `stored` at a `pressure`, dimensionless, and the
+    volume that of the mesh: their sum is the same.
+    """
     on = place(basis, p, b)
 
     def one(share: Array, loads: Array) -> tuple[Array, Array, Array]:
-        local = localise(basis, on, Unknowns(u, loads), share)
+        local = localise(basis, on, Unknowns(u, loads), share, pressure)
         s = assemble(basis, on, local, 3)
         return local.value.sum(), s.rest, s.stiffness
 
@@ -75,13 +80,15 @@ class Balance(NamedTuple):
 
 
 @kernel
-def balance(basis: Basis, p: Parameters, b: Number, u: Float[Array, " m"]) -> Balance:
+def balance(basis: Basis, p: Parameters, b: Number, u: Float[Array, " m"], pressure: Any = None) -> Balance:
     """By plain differentiation of the totals, which takes a quarter of the time of `evaluate` to compile."""
     on = place(basis, p, b)
     weights = jnp.asarray(basis.operators().weights) * on.jacobian
 
     def totals(u: Array) -> tuple[Array, tuple[Array, Array]]:
         at = basis.form.point(variables(basis, on, u), on.p)
+        if pressure is not None:
+            at = jax.vmap(lambda at: inflated(at, pressure * on.unit[0] / on.unit[2], on.p))(at)
         densities = jax.vmap(lambda at: jnp.stack([stored(at, on.p), *works(at, on.p)]))(at)
         found = weights @ densities / on.unit
         return found, (radians(at.theta), found)
@@ -154,13 +161,21 @@ class Problem:
         """How many loads are unknowns: force, pressure and, where equal end radii are a condition, closing moment."""
         return 3 if self.basis.closes else 2
 
-    def evaluate(self, u: np.ndarray) -> Assembly:
-        """The four dimensionless quantities and their derivatives."""
-        return Assembly(*map(np.asarray, evaluate(self.basis, self.p, self.b, u)))
+    @property
+    def leaves(self) -> bool:
+        """Whether the chamber may leave the braid, so that energy and volume depend on the pressure as well."""
+        return leaves(self.p)
 
-    def balance(self, u: np.ndarray) -> Balance:
+    def evaluate(self, u: np.ndarray, pressure: float = 0.0) -> Assembly:
+        """The four dimensionless quantities and their derivatives, at a dimensionless pressure where that matters."""
+        return Assembly(*map(np.asarray, evaluate(self.basis, self.p, self.b, u, *self._at(pressure))))
+
+    def balance(self, u: np.ndarray, pressure: float = 0.0) -> Balance:
         """The four dimensionless quantities and their gradients: for a look at a state, not for a search."""
-        return Balance(*map(np.asarray, balance(self.basis, self.p, self.b, u)))
+        return Balance(*map(np.asarray, balance(self.basis, self.p, self.b, u, *self._at(pressure))))
+
+    def _at(self, pressure: float) -> tuple[np.ndarray, ...]:
+        return (np.asarray(pressure),) if self.leaves else ()
 
     def moved(self, du: np.ndarray) -> float:
         """Largest change of psi [rad] at the points by a change of the unknowns."""
