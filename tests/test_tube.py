@@ -191,3 +191,4 @@ def test_sweep_over_tubes() -> None:
     assert "must be at most 10 mm" in str(made["reason"].values[2])
     alone = mk.run(MUSCLE, test)
     assert made["force"].values[1, 0] == pytest.approx(float(alone.force[0]), rel=1e-8)
+    assert made["air_volume"].values[1, 0] == pytest.approx(float(alone.data["air_volume"][0]), rel=1e-8)

@@ -55,7 +55,7 @@ class Chamber:
         wall: "thin" (the paper's, and where it is left out): the whole wall has the stretches of where it rides on the
             braid. "thick": its stretches are those of an incompressible tube, integrated through the wall.
         gap: whether a chamber inside may leave the braid: then it is a tube blown up alone until it touches, and what
-            it has of the braid is the axial stretch beside it.
+            it has of the braid is the axial stretch beside it. Volumes are then those inside its outer face.
 
     Raises:
         SpecError: for a value out of range, a law that is none of these, a thickness beside diameters, or half of
