@@ -38,7 +38,21 @@ CLOSE = 1e-10
 
 @attrs.frozen
 class DeadZone:
-    """Pressures between which a chamber comes to touch its braid, at one length; all in SI units."""
+    """Pressures between which a chamber comes to touch its braid, at one length; all in SI units.
+
+    It is what `dead_zone` gives.
+
+    Args:
+        length: distance between the fittings [m].
+        begins: gauge pressure [Pa] from which the chamber touches anywhere; NaN where it never does.
+        ends: gauge pressure [Pa] from which it touches all along the braid; NaN where it never does.
+        force: of the muscle [N] where it has come to touch everywhere.
+
+    >>> tube = mk.Chamber(outer_diameter="20 mm", inner_diameter="18 mm", law=mk.NeoHookean(c1="0.15 MPa"), gap=True)
+    >>> found = mk.dead_zone(mk.presets.paper().replace("chamber", tube), length="95 mm")
+    >>> round(found.begins / 1e5, 4), round(found.ends / 1e5, 4)  # bar
+    (0.137, 0.1683)
+    """
 
     length: float  #: [m]
     begins: float  #: gauge pressure [Pa] from which it touches anywhere; NaN where it never does
@@ -76,7 +90,7 @@ def dead_zone(muscle: Muscle, *, length: Any = None, contraction: Any = None) ->
     >>> muscle = mk.presets.paper().replace("chamber", tube)
     >>> found = mk.dead_zone(muscle, length="85 mm")
     >>> round(found.ends / 1e5, 4)  # bar
-    0.1673
+    0.1683
     """
     refuse_friction(muscle, "dead_zone")
     if muscle.chamber is None or not muscle.chamber.gap:
