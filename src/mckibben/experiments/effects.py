@@ -94,7 +94,12 @@ def effects(muscle: Muscle, *, length: Any = None, contraction: Any = None, pres
 
 
 def _own(effects: Iterable[Effect], muscle: Muscle) -> list[Effect]:
-    """The effects, with the muscle's own friction where it has one, and on its own dead length."""
+    """The effects, with the muscle's own friction where it has one, and on its own dead length.
+
+    A gap is one of a chamber inside alone.
+    """
+    inside = muscle.chamber is not None and muscle.chamber.inside
+    effects = [one for one in effects if one.field != "chamber.gap" or inside]
     own: dict[str, dict[str, Any]] = {}
     if muscle.friction is not None:
         own["friction"] = {"on": muscle.friction, "switch": "friction, as given", "assumed": False}
