@@ -56,6 +56,7 @@ def test_a_sweep(old_sweep: Path) -> None:
     expected = [[2.5975491525612076, 87.63314743407096], [4.459955966822061, 117.26602884246725]]
     np.testing.assert_array_equal(data["force"], expected)
     assert data["force"].attrs["units"] == "N"
+    assert data["air_volume"].isnull().all()  # not kept then
     assert not data["status"].values.any()
     assert not data["verdict"].values.any()
     about = data.attrs

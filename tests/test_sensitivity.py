@@ -69,7 +69,7 @@ def results(
 
     def newton(_: Any, state: Unknowns) -> Unknowns:
         s = system(basis, on, state)
-        c = conditions(own, which, targets, on.unit, s.values, state.loads)
+        c = conditions(own, which, targets, on, s, state.loads)
         step = jnp.linalg.solve(bordered(s, c), jnp.concatenate([s.rest, c.miss]))
         return Unknowns(state.u - step[:m], state.loads - step[m:])
 

@@ -107,15 +107,6 @@ def test_radius_of_the_centre_lines() -> None:
         assert caught.value.field == f"centre_radius.{field}"
 
 
-@pytest.mark.spec
-def test_gas_beside_rubber_is_refused() -> None:
-    step = mk.Step(length="90 mm", gas="isothermal")
-    assert step.as_steps(WALL) == (step,)
-    for test in (step, mk.Protocol(steps=[step])):
-        with pytest.raises(mk.SpecError, match="rubber lies inside"):
-            test.as_steps(MUSCLE)
-
-
 @pytest.mark.experiments
 def test_what_check_shows() -> None:
     shown = {name: value for name, value, _ in foresee.derived(MUSCLE)}
@@ -200,3 +191,4 @@ def test_sweep_over_tubes() -> None:
     assert "must be at most 10 mm" in str(made["reason"].values[2])
     alone = mk.run(MUSCLE, test)
     assert made["force"].values[1, 0] == pytest.approx(float(alone.force[0]), rel=1e-8)
+    assert made["air_volume"].values[1, 0] == pytest.approx(float(alone.data["air_volume"][0]), rel=1e-8)

@@ -24,6 +24,7 @@ _PUBLIC = {
     "mckibben.spec.wishes": ("Demand", "Maximise", "Minimise"),
     "mckibben.experiments.run": ("run",),
     "mckibben.experiments.solve": ("solve",),
+    "mckibben.experiments.dead_zone": ("DeadZone", "dead_zone"),
     "mckibben.experiments.limits": ("Limits", "least_pressure", "limits", "working_range"),
     "mckibben.measure.caution": ("MuscleWarning", "cautions"),
     "mckibben.sweeps.sweep": ("sweep",),

@@ -40,6 +40,7 @@ EFFECTS = (
     Effect("roll at the crossings", "braid.joint", "pin", "hinge", 'braid.joint = "pin"'),
     Effect("wall inside the braid", "chamber.lies", "inside", "outside", 'chamber.lies = "inside"'),
     Effect("thickness of the wall", "chamber.wall", "thick", "thin", 'chamber.wall = "thick"'),
+    Effect("gap between tube and braid", "chamber.gap", True, False, "chamber.gap = true"),
     Effect(
         "fittings that give way", "fittings", Fittings(compliance=_COMPLIANCE), None,
         f'fittings.compliance = "{_COMPLIANCE}"', assumed=True,
@@ -56,9 +57,10 @@ EFFECTS = (
 def effects(muscle: Muscle, *, length: Any = None, contraction: Any = None, pressure: Any) -> Effects:
     """The size of each effect for a muscle at a length and pressure: solved with it and without, nothing guessed.
 
-    Stretch and roll of the fibres, where the wall lies and how thick it is, fittings that give way, friction, and the
-    ends. What a muscle already has is switched off for the comparison; the rest is switched on, one by one. Friction
-    has no one state: what is told is half of what lies between the forces as the muscle lengthens and as it shortens.
+    Stretch and roll of the fibres, where the wall lies and how thick it is, a gap between tube and braid, fittings that
+    give way, friction, and the ends. What a muscle already has is switched off for the comparison; the rest is switched
+    on, one by one. Friction has no one state: what is told is half of what lies between the forces as the muscle
+    lengthens and as it shortens.
 
     Args:
         muscle: the specification.
@@ -92,7 +94,12 @@ def effects(muscle: Muscle, *, length: Any = None, contraction: Any = None, pres
 
 
 def _own(effects: Iterable[Effect], muscle: Muscle) -> list[Effect]:
-    """The effects, with the muscle's own friction where it has one, and on its own dead length."""
+    """The effects, with the muscle's own friction where it has one, and on its own dead length.
+
+    A gap is one of a chamber inside alone.
+    """
+    inside = muscle.chamber is not None and muscle.chamber.inside
+    effects = [one for one in effects if one.field != "chamber.gap" or inside]
     own: dict[str, dict[str, Any]] = {}
     if muscle.friction is not None:
         own["friction"] = {"on": muscle.friction, "switch": "friction, as given", "assumed": False}

@@ -20,6 +20,7 @@ from mckibben.compiled.arrays import Array
 from mckibben.compiled.kernel import kernel
 from mckibben.discretise.fields import Placed, place, variables
 from mckibben.model.energy import stored, works
+from mckibben.model.gap import inflated
 from mckibben.model.parameters import Number, parameters
 from mckibben.solver.batch import moved
 from mckibben.solver.held import conditions, rows_of
@@ -78,9 +79,10 @@ def forces_at(
     def lagrangian(free: Array, state: Unknowns) -> Array:
         on = placed(free)
         at = basis.form.point(variables(basis, on, state.u), on.p)
+        loads = state.loads
+        at = jax.vmap(lambda at: inflated(at, loads[1] * on.unit[0] / on.unit[2], on.p))(at)
         densities = jax.vmap(lambda at: jnp.stack([stored(at, on.p), *works(at, on.p)]))(at)
         energy, *works_on = ((weights * on.jacobian) @ densities) / on.unit
-        loads = state.loads
         return energy - sum(loads[k] * works_on[k] for k in range(len(loads)))
 
     here = placed(free)
@@ -142,7 +144,7 @@ def _arrived(basis: Basis, on: Placed, which: Array, target: Array, start: Unkno
 
     def again(now: _Arrived) -> _Arrived:
         s = system(basis, on, now.state)
-        c = correct(s, conditions((), which, target, on.unit, s.values, now.state.loads))
+        c = correct(s, conditions((), which, target, on, s, now.state.loads))
         u, loads = (old + by for old, by in zip(now.state[:2], c.step[:2], strict=True))
         return _Arrived(Unknowns(u, loads), c.tangents, moved(basis, on, c.step.u), c.stable, now.count + 1)
 

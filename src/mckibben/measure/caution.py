@@ -11,7 +11,8 @@ from mckibben.compiled.arrays import Array
 from mckibben.compiled.kernel import kernel
 from mckibben.measure.signs import after, strong
 from mckibben.model.cylinder import cylinder_angle, cylinder_force
-from mckibben.model.kinematics import radius
+from mckibben.model.gap import contact_of, inflated
+from mckibben.model.kinematics import height_rate, radius, volume_rate
 from mckibben.model.parameters import Number, Parameters, parameters
 from mckibben.model.point import Point
 from mckibben.model.wall import chamber_pull, chamber_stretches, contact_pressure
@@ -99,10 +100,12 @@ class Predicted(NamedTuple):
 def predicted(p: Parameters, length: Array, pressure: Array) -> Predicted:
     """The cylinder of a given length [m] at a gauge pressure [Pa]."""
     theta = cylinder_angle(length, p)
-    at, force = Point.cylinder(theta), cylinder_force(theta, pressure, p)
+    at, force = inflated(Point.cylinder(theta), pressure, p), cylinder_force(theta, pressure, p)
     r = radius(at, p)
-    pull = (force + jnp.pi * r**2 * pressure - chamber_pull(at, p)) / (p.N * jnp.sin(theta))
-    contact, thickness = contact_pressure(at, pressure, p), chamber_stretches(at, p)[2]
+    area = jnp.pi * r**2 if at.blown is None else volume_rate(at, p) / height_rate(at, p)
+    pull = (force + area * pressure - chamber_pull(at, p)) / (p.N * jnp.sin(theta))
+    contact = contact_pressure(at, pressure, p) if at.blown is None else contact_of(at, pressure, p)[2]
+    thickness = chamber_stretches(at, p)[2]
     return Predicted(*wrinkling(length, pressure, p), theta, r, force, pull, contact, thickness)
 
 

@@ -22,6 +22,7 @@ from mckibben.model.angle import cos, radians, slope
 from mckibben.model.energy import fittings_density, lagrangian
 from mckibben.model.fibres import axial_density, fibre_densities
 from mckibben.model.friction import crossing_density, crossing_moment
+from mckibben.model.gap import contact_of, inflated
 from mckibben.model.kinematics import fibre_strains, height_rate, radius, volume_rate
 from mckibben.model.parameters import Number, Parameters
 from mckibben.model.point import Point
@@ -62,6 +63,7 @@ def read(basis: Basis, on: Placed, state: Unknowns, kept: Any = None) -> Reading
     M = state.loads[2] * on.unit[0] if basis.closes else 0.0
     inner, memory = states_at(basis, on, state.u), state.memory
     outer = points_at(basis, on, state.u, sampling)
+    inner, outer = (jax.vmap(lambda at: inflated(at, P, p))(one) for one in (inner, outer))
 
     def local(at: Point, memory: Any) -> tuple[tuple[Array, ...], Array, Array]:
         return tuple(_densities(at, p, memory).values()), height_rate(at, p), volume_rate(at, p)
@@ -93,6 +95,9 @@ def read(basis: Basis, on: Placed, state: Unknowns, kept: Any = None) -> Reading
         "peak_fibre_tension": tallest[0], "largest_radius": tallest[1],
         "air_volume": volume if p.tube is None else volume - p.tube.rubber,
     }  # fmt: skip
+    if inner.blown is not None:
+        touching = jax.vmap(lambda at: contact_of(at, P, p)[0])(inner)
+        numbers["contact"] = jnp.where(touching.all(), 1.0, weights @ touching / weights.sum())
     return Reading(numbers, found, jnp.abs(found["psi"]).max(), variation, basis.tail(state.u))
 
 
@@ -159,8 +164,11 @@ def _fields(
     hoop, axial, thickness = chamber_stretches(at, p)
     u1, u2, u3 = fibre_strains(at, p)
     chamber_axial = chamber_pull(at, p) * cos(at.psi)
-    total_axial = F + jnp.pi * radius(at, p) ** 2 * P
+    area = jnp.pi * radius(at, p) ** 2 if at.blown is None else volume_rate(at, p) / height_rate(at, p)
+    total_axial = F + area * P
     effects: dict[str, Number] = {}
+    if at.blown is not None:
+        _, effects["gap"], pressed = contact_of(at, P, p)
     if at.stretch is not None:
         effects |= {"fibre_stretch": at.stretch, "density_stretch": density["stretch"]}
     if at.roll is not None:
@@ -175,7 +183,7 @@ def _fields(
         "density_fibres": bending1 + bending2 + twist, "density_chamber": density["chamber"],
         "fibre_tension": tension(at, costates, F, P, p, memory),
         "share_chamber": chamber_axial / total_axial, "share_mesh": 1.0 - chamber_axial / total_axial,
-        "contact_pressure": contact_pressure(at, P, p),
+        "contact_pressure": contact_pressure(at, P, p) if at.blown is None else pressed,
     }  # fmt: skip
 
 

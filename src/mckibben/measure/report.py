@@ -21,9 +21,9 @@ from mckibben.solver.path import INTERRUPTED
 from mckibben.spec import Muscle, Test
 
 NUMBERS = (
-    "length", "contraction", "force", "pressure", "volume", "air_volume", *(f"energy_{name}" for name in ENERGIES),
-    "energy_stretch", "energy_fittings", "energy_crossings", "energy", "dissipated", "residual", "error_estimate",
-    "coefficient_tail", "conserved_variation",
+    "length", "contraction", "force", "pressure", "volume", "air_volume", "contact",
+    *(f"energy_{name}" for name in ENERGIES), "energy_stretch", "energy_fittings", "energy_crossings", "energy",
+    "dissipated", "residual", "error_estimate", "coefficient_tail", "conserved_variation",
 )  # fmt: skip
 
 

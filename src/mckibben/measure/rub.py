@@ -16,6 +16,7 @@ from mckibben.discretise.fields import Placed, place, points_at
 from mckibben.measure.read import costates, nodes, states_at
 from mckibben.model.energy import works
 from mckibben.model.friction import Crossing, after_step, as_made, crossings, slip_moment, turn
+from mckibben.model.gap import inflated
 from mckibben.model.parameters import Number, Parameters
 from mckibben.model.point import Point
 from mckibben.model.tension import tension
@@ -87,7 +88,7 @@ def rub(
 
     def newton(state: Unknowns) -> tuple[Unknowns, Array, Array]:
         s = system(basis, on, state)
-        c = correct(s, conditions(own, which, targets, on.unit, s.values, state.loads))
+        c = correct(s, conditions(own, which, targets, on, s, state.loads))
         new = state._replace(u=state.u + c.step.u, loads=state.loads + c.step.loads)
         return new, jnp.abs(c.step.u).max(), c.stable
 
@@ -138,7 +139,8 @@ def _after(basis: Basis, on: Placed, begun: Unknowns, found: _Round) -> Stepped:
     def turned(at: Point) -> Array:
         return jax.vmap(lambda at: turn(at, p))(at)
 
-    rates = jax.vmap(lambda at: works(at, p))(inner)
+    P = state.loads[1] * on.unit[0] / on.unit[2]
+    rates = jax.vmap(lambda at: works(inflated(at, P, p), p))(inner)
     mean = 0.5 * (begun.memory.moment + state.memory.moment)  # of second order in the step, and never negative
     slipped = mean * jnp.abs(next_inner.alpha - state.memory.alpha)
     weights = jnp.asarray(basis.operators().weights) * on.jacobian
@@ -156,6 +158,7 @@ def moments(basis: Basis, on: Placed, state: Unknowns, kept: Crossing) -> tuple[
     F, P = state.loads[0] * on.unit[0] / on.unit[1], state.loads[1] * on.unit[0] / on.unit[2]
     M = state.loads[2] * on.unit[0] if basis.closes else 0.0
     inner, outer = states_at(basis, on, state.u), points_at(basis, on, state.u, sampling)
+    inner, outer = (jax.vmap(lambda at: inflated(at, P, p))(one) for one in (inner, outer))
     along = costates(basis, on, inner, (F, P, M), sampling, state.memory)
 
     def moment(at: Point, c: tuple[Array, ...], memory: Crossing) -> Number:

@@ -90,7 +90,7 @@ def breaking(muscle: Muscle, steps: Columns, fields: Columns) -> list[str]:
 
 def apart(muscle: Muscle, steps: Columns, fields: Columns) -> list[str]:
     """A chamber inside the braid that would not touch it; the paper's is part of the mesh and has no such states."""
-    if muscle.chamber is None or not muscle.chamber.inside:
+    if muscle.chamber is None or not muscle.chamber.inside or muscle.chamber.gap:
         return []
     least = fields["contact_pressure"].min(axis=1)
     states = np.flatnonzero(least < -TOUCHING)

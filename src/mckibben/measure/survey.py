@@ -125,7 +125,8 @@ def survey(
     """Look at states u (n, m) under loads (n, l), found with `held` controlled, and what they remembered."""
     reading, stable, residual = read_states(problem, u, loads, "volume" in held, kept)
     certain = stable.length & stable.force & stable.antisymmetric
-    if any(name in GASES for name in held):  # they were taken to be at held pressure
+    softly = problem.leaves and "volume" in held
+    if softly or any(name in GASES for name in held):  # they were taken to be at held pressure
         certain = np.zeros_like(certain)
     modes = [PLAIN] * len(u)
     if not problem.basis.half:
@@ -135,7 +136,7 @@ def survey(
         memory = None if kept is None else jax.tree.map(lambda rows: rows[open_ones], kept.inner)
         states = padded_states(Unknowns(u[open_ones], loads[open_ones], memory))
         tangents = of_states(problem, states.u, states.loads, held, states.memory)
-        counted = count_modes(problem, tangents, pressure_held="volume" not in held)
+        counted = count_modes(problem, tangents, pressure_held=softly or "volume" not in held)
         for k, one in zip(open_ones, counted, strict=False):
             modes[k] = one
     shapes = [Shape.ORDINARY] * len(u)

@@ -6,12 +6,14 @@ It is the state of a long muscle away from its ends: psi = 0 and theta uniform (
 import jax
 import jax.numpy as jnp
 
-from mckibben.model.energy import stored
-from mckibben.model.kinematics import radius
+from mckibben.model.angle import radians
+from mckibben.model.energy import lagrangian, stored
+from mckibben.model.gap import inflated, leaves
+from mckibben.model.kinematics import radius, volume_rate
 from mckibben.model.parameters import Number, Parameters
 from mckibben.model.point import Point
 
-__all__ = ["cylinder_angle", "cylinder_force", "cylinder_length", "cylinder_volume", "end_layer"]
+__all__ = ["cylinder_angle", "cylinder_force", "cylinder_length", "cylinder_volume", "end_layer", "inside_at_rest"]
 
 
 def cylinder_force(theta: Number, pressure: Number, p: Parameters) -> Number:
@@ -19,6 +21,9 @@ def cylinder_force(theta: Number, pressure: Number, p: Parameters) -> Number:
 
     F = [dw/dtheta - P d(pi r^2 s)/dtheta] / (ds/dtheta); with no stored energy this is Eq. (31).
     """
+    if leaves(p):
+        slope = jax.grad(lambda t: lagrangian(Point.cylinder(t), p, 0.0, pressure))(theta)
+        return slope * jnp.sin(p.theta0) / jnp.cos(theta)
     energy = jax.grad(lambda t: stored(Point.cylinder(t), p))(theta)
     volume = jax.grad(lambda t: cylinder_volume(t, p) / p.H0)(theta)
     return (energy - pressure * volume) * jnp.sin(p.theta0) / jnp.cos(theta)
@@ -38,6 +43,12 @@ def cylinder_angle(length: Number, p: Parameters) -> Number:
 def cylinder_volume(theta: Number, p: Parameters) -> Number:
     """Enclosed volume [m^3] of the cylinder; largest at the magic angle arctan(1/sqrt 2) (Fig. 1)."""
     return jnp.pi * radius(Point.cylinder(theta), p) ** 2 * p.active(cylinder_length(theta, p))
+
+
+def inside_at_rest(p: Parameters) -> Number:
+    """Volume [m^3] that the pressure fills in a muscle as mounted, without any: of a chamber that may leave the braid,
+    its own."""
+    return p.H0 * volume_rate(inflated(Point.cylinder(radians(p.theta0)), 0.0, p), p)
 
 
 def end_layer(theta: Number, tension: Number, p: Parameters) -> Number:

@@ -13,6 +13,7 @@ import jax.numpy as jnp
 from mckibben.compiled.arrays import Array
 from mckibben.model.fibres import axial_density, fibre_densities
 from mckibben.model.friction import after_step, incremental_density
+from mckibben.model.gap import leaves, relaxed_density
 from mckibben.model.kinematics import closure_rate, height_rate, volume_rate
 from mckibben.model.parameters import Number, Parameters
 from mckibben.model.point import Point
@@ -27,13 +28,15 @@ LOADS = ("force", "pressure", "moment")
 """What does work on the change of length, volume and closure: axial force F, gauge pressure P, closing moment M."""
 
 
-def stored(at: Point, p: Parameters, memory: Any = None) -> Number:
+def stored(at: Point, p: Parameters, memory: Any = None, P: Any = None, found: Any = None) -> Number:
     """Stored energy per unit v [J/m]: fibres (Eq. 20) and chamber (Eq. 26).
 
     `memory` is what a material point keeps of the state before: with friction, a `Crossing`. Without one the crossings
-    turn freely.
+    turn freely. Given a pressure P [Pa], a chamber with a gap counts with the work that is not done on the gap, so that
+    less P times the volume of the mesh it is what a state makes stationary; `found` is its hoop stretch, if known.
     """
-    energy = sum(fibre_densities(at, p)) + chamber_density(at, p)
+    gap = P is not None and leaves(p)
+    energy = sum(fibre_densities(at, p)) + (relaxed_density(at, P, p, found) if gap else chamber_density(at, p))
     energy = energy if at.stretch is None else energy + axial_density(at, p)
     energy = energy if at.give is None else energy + fittings_density(at, p)
     return energy if p.friction is None or memory is None else energy + incremental_density(at, p, memory)
@@ -57,9 +60,11 @@ def works(at: Point, p: Parameters) -> tuple[Number, Number, Number]:
 
 
 def lagrangian(at: Point, p: Parameters, F: Number, P: Number, M: Number = 0.0, memory: Any = None) -> Number:
-    """L = w - F z' - P pi r^2 z' - M closure [J/m]: what a state makes stationary."""
+    """L = w - F z' - P pi r^2 z' - M closure [J/m]: what a state makes stationary, to be differentiated where it is."""
+    found = None if at.blown is None else jax.lax.stop_gradient(at.blown)
+    at = at if at.blown is None else at._replace(blown=None)
     height, volume, closure = works(at, p)
-    return stored(at, p, memory) - F * height - P * volume - M * closure
+    return stored(at, p, memory, P, found) - F * height - P * volume - M * closure
 
 
 def scales(p: Parameters) -> Array:

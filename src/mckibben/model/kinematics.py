@@ -9,6 +9,7 @@ from mckibben.model.point import Point
 __all__ = [
     "angle_rate",
     "closure_rate",
+    "facing",
     "fibre_strains",
     "height_rate",
     "meridian_stretch",
@@ -65,8 +66,21 @@ def height_rate(at: Point, p: Parameters) -> Number:
 
 
 def volume_rate(at: Point, p: Parameters) -> Number:
-    """Enclosed volume per unit v, pi r^2 z' [m^2] (Eq. 27)."""
-    return jnp.pi * radius(at, p) ** 2 * height_rate(at, p)
+    """Enclosed volume per unit v, pi r^2 z' [m^2] (Eq. 27); of a chamber that may leave the braid, what it encloses."""
+    inside = jnp.pi * radius(at, p) ** 2 * height_rate(at, p)
+    if at.blown is None:
+        return inside
+    gap = radius(at, p) ** 2 - (p.R0 * at.blown) ** 2
+    return inside - jnp.pi * gap * meridian_stretch(at, p) * facing(at)
+
+
+def facing(at: Point) -> Number:
+    """How much of the meridian lies along the axis, cos(psi); where it is steeper than 60 deg no less than 1/4.
+
+    There the mesh has turned over, and a chamber beside it no longer moves off along the radius.
+    """
+    c = cos(at.psi)
+    return jnp.where(c > 0.5, c, 0.25 + jnp.maximum(c, 0.0) ** 2)
 
 
 def fibre_strains(at: Point, p: Parameters) -> tuple[Number, Number, Number]:

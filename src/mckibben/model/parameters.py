@@ -36,6 +36,7 @@ class Tube(NamedTuple):
     axial: Number  #: axial stretch as mounted: H0 over the length as made
     rubber: Number  #: volume of rubber inside the braid [m^3]
     across: Number | None  #: (radius of the other face over that of the one that rides)^2 as made; None: a thin wall
+    gap: Any = None  #: () where the chamber may leave the braid; None where the two are held together
 
 
 class Rubbing(NamedTuple):
@@ -139,7 +140,8 @@ def _tube(chamber: Chamber, braid: Braid) -> Tube | None:
     hoop, axial = chamber.stretches(braid.radius, braid.length)
     area = chamber.area(braid.radius)
     rubber = area * braid.length / axial if chamber.inside else 0.0 * area
-    return Tube(hoop, axial, rubber, chamber.other_face(braid.radius) if chamber.thick else None)
+    across = chamber.other_face(braid.radius) if chamber.thick else None
+    return Tube(hoop, axial, rubber, across, () if chamber.gap else None)
 
 
 def static_braid(p: Parameters) -> Number:

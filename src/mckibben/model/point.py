@@ -26,6 +26,7 @@ class Point(NamedTuple):
     roll: Any = None  #: angle phi [rad] by which a fibre's section turns about it; None where crossings hinder it
     roll_rate: Any = None  #: its derivative phi' = d phi/dv [rad/m]
     give: Any = None  #: by how much the fittings give way, over H0: the same at all points; None where they are rigid
+    blown: Any = None  #: hoop stretch, of R0, of a chamber that may leave the braid; None where it never does
 
     @classmethod
     def cylinder(cls, theta: Number) -> "Point":

@@ -23,7 +23,14 @@ from mckibben.model.angle import cos, radians, sin, slope
 from mckibben.model.energy import lagrangian
 from mckibben.model.fibres import axial_force, fibre_densities
 from mckibben.model.friction import pull
-from mckibben.model.kinematics import angle_rate, fibre_strains, radius, stretch_rate
+from mckibben.model.kinematics import (
+    angle_rate,
+    fibre_strains,
+    meridian_stretch,
+    radius,
+    stretch_rate,
+    volume_rate,
+)
 from mckibben.model.parameters import Number, Parameters
 from mckibben.model.point import Point
 from mckibben.model.wall import chamber_pull
@@ -46,7 +53,10 @@ def tension(
     by_theta = by_theta if memory is None else by_theta + pull(at, p, memory)
     q = -(costate - by_rate) * cosine / (p.R0 * sin(at.theta))
     axial = F + jnp.pi * radius(at, p) ** 2 * P
-    along = axial * cos(at.psi) + q * sin(at.psi) - chamber_pull(at, p)
+    held = (
+        axial * cos(at.psi) if at.blown is None else F * cos(at.psi) + P * volume_rate(at, p) / meridian_stretch(at, p)
+    )
+    along = held + q * sin(at.psi) - chamber_pull(at, p)
     return (along - (by_theta - by_rate_dv) * sine * cos(at.theta)) / (p.N * sin(at.theta))
 
 

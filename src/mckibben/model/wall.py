@@ -51,24 +51,30 @@ def _mounted(hoop: Number, axial: Number, p: Parameters) -> tuple[Number, Number
     return (hoop, axial) if p.tube is None else (hoop * p.tube.hoop, axial * p.tube.axial)
 
 
+def _beside(at: Point, p: Parameters) -> tuple[Number, Number]:
+    """Hoop and axial stretch of the chamber in those of the mesh: the mesh's own, or less where it has left it."""
+    hoop, axial, _ = stretches(at, p)
+    return (hoop if at.blown is None else at.blown), axial
+
+
 def chamber_stretches(at: Point, p: Parameters) -> tuple[Number, Number, Number]:
     """Principal stretches of the rubber at the face that rides on the mesh: hoop, axial, thickness."""
     hoop, axial, thickness = stretches(at, p)
     if p.tube is None:
         return hoop, axial, thickness
-    hoop, axial = _mounted(hoop, axial, p)
+    hoop, axial = _mounted(*_beside(at, p), p)
     return hoop, axial, 1.0 / (hoop * axial)
 
 
 def chamber_density(at: Point, p: Parameters) -> Number:
     """Energy of the chamber per unit v [J/m]: A0 psi(C) (Eq. 26)."""
-    hoop, axial, _ = stretches(at, p)
+    hoop, axial = _beside(at, p)
     return p.A0 * mean_density(hoop, axial, p)
 
 
 def chamber_pull(at: Point, p: Parameters) -> Number:
     """Meridian force of the chamber [N]: A0 d(psi)/d(lambda2) at fixed hoop stretch of the mesh."""
-    hoop, axial, _ = stretches(at, p)
+    hoop, axial = _beside(at, p)
     return p.A0 * jax.grad(lambda a: mean_density(hoop, a, p))(axial)
 
 

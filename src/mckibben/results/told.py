@@ -27,12 +27,16 @@ SAFETY = ("safety_factor", "safety", "")
 AIR = ("air_volume", "air", "mL")
 """The column of a muscle whose chamber lies inside the braid, after that of the volume."""
 
+CONTACT = ("contact", "contact", "%")
+"""The column of a muscle whose chamber may leave the braid."""
+
 
 def columns(muscle: Muscle) -> tuple[tuple[str, str, str], ...]:
     """The columns that say something of this muscle."""
     inside = muscle.chamber is not None and muscle.chamber.inside
     shown = (column for one in COLUMNS for column in ((one, AIR) if inside and one[0] == "volume" else (one,)))
-    return (*shown, *(() if muscle.braid.fibre.breaking_force is None else (SAFETY,)))
+    gap = muscle.chamber is not None and muscle.chamber.gap
+    return (*shown, *((CONTACT,) if gap else ()), *(() if muscle.braid.fibre.breaking_force is None else (SAFETY,)))
 
 
 def cells(row: dict[str, Any], columns: Iterable[tuple[str, str, str]]) -> Iterator[str]:

@@ -46,7 +46,7 @@ def linearised(
     basis, own = static
     on = place(basis, p, b)
     s = system(basis, on, state)
-    c = conditions(own, which, targets, on.unit, s.values, state.loads)
+    c = conditions(own, which, targets, on, s, state.loads)
     return Linear(bordered(s, c), s.rest, c.miss)
 
 

@@ -43,7 +43,7 @@ TRIES = 4
 def newton(basis: Basis, on: Placed, which: Array, state: Unknowns, target: Array) -> Correction:
     """One Newton step towards what is held."""
     s = system(basis, on, state, together=True)
-    return correct(s, conditions((), which, target, on.unit, s.values, state.loads))
+    return correct(s, conditions((), which, target, on, s, state.loads))
 
 
 def moved(basis: Basis, on: Placed, du: Array) -> Array:

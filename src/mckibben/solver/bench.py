@@ -1,20 +1,26 @@
 """A muscle on the bench: its numbers, what limits its length, and the discretisations to put it on."""
 
+from functools import partial
 from typing import Any
 
 import attrs
+import jax
 import numpy as np
 
+from mckibben.compiled.arrays import Array
+from mckibben.compiled.kernel import kernel
 from mckibben.discretise.bspline import Spline
 from mckibben.discretise.placement import crowding
 from mckibben.discretise.spectral import Line
 from mckibben.model.extension import longest_of
+from mckibben.model.gap import STEADY, leaves, peak
 from mckibben.model.parameters import Parameters, parameters
 from mckibben.solver.held import Held
 from mckibben.solver.problem import Basis, Problem
 from mckibben.spec import Muscle, SpecError
+from mckibben.units import show
 
-__all__ = ["LADDER", "SIZES", "Bench", "sizes_for"]
+__all__ = ["LADDER", "SIZES", "Bench", "jumps", "sizes_for"]
 
 LADDER = (24, 48, 96, 192)
 """Half-length unknowns, tried in turn until the error estimate is below the tolerance; few states need the last."""
@@ -38,6 +44,7 @@ class Bench:
     def of(cls, muscle: Muscle) -> "Bench":
         """From the specification."""
         p, line = parameters(muscle), Line.of(muscle, 1)
+        _refuse_jumps(p)
         return cls(p, line, longest_of(p, line.ends))
 
     @property
@@ -67,6 +74,33 @@ class Bench:
     def too_long(self) -> str:
         """Why no equilibrium exists beyond full extension."""
         return f"no equilibrium: the fibres are straight at {1e3 * self.longest:.4f} mm, the longest possible length"
+
+
+@partial(kernel, static_argnums=())
+def peaks(p: Parameters) -> tuple[Array, Array]:
+    """`model.gap.peak`, compiled."""
+    return peak(p)
+
+
+def jumps(p: Parameters) -> np.ndarray:
+    """Which of many muscles, whose numbers are arrays (n), have a chamber with a gap that would jump to the braid."""
+    if not leaves(p) or isinstance(p.law, STEADY):
+        return np.zeros(len(p.R0), bool)
+    return np.isfinite(np.asarray(jax.vmap(peak)(p)[0]))
+
+
+def _refuse_jumps(p: Parameters) -> None:
+    """SpecError for a chamber with a gap whose pressure has a maximum on the way to the braid: it would jump there."""
+    if not leaves(p) or isinstance(p.law, STEADY):
+        return
+    pressure, radius = map(float, peaks(p))
+    if pressure == pressure:
+        bears, wide = show(pressure, "Pa", 3), show(2.0 * radius, "m", 3)
+        said = (
+            f"is for tubes that bear the more the wider they are: this one, blown up alone, bears {bears} at most "
+            f"before it touches the braid, at a diameter of {wide}, and jumps from there, which is not followed"
+        )
+        raise SpecError("chamber.gap", "true", said, "leave gap out, or take a law that does not soften (NeoHookean)")
 
 
 def sizes_for(discretisation: str, tolerance: float) -> tuple[int, ...]:

@@ -32,7 +32,7 @@ class Equilibrium:
     def now(self) -> Now:
         """What the state reads, in SI units."""
         loads = self.problem.loads
-        found = read_rows(self.problem.unit, self.totals[1 : 1 + loads], self.loads)
+        found = read_rows(self.problem.unit, self.totals[1 : 1 + loads], self.loads, self.problem.p)
         return Now(*map(float, found))
 
     @property

@@ -1,5 +1,6 @@
 """Straight to one state: the robust search, in physical terms."""
 
+from functools import partial
 from typing import Any
 
 import attrs
@@ -24,9 +25,10 @@ def find(
 
     A search whose slopes change by more than `leash` [rad] is given up: what it would find is not near its start.
     A state that is no minimum of the energy under what is held (length and force, volume and pressure, gas, a spring)
-    is reached along the straight way there from the start.
+    is reached along the straight way there from the start; so is one without a pressure held of a chamber that may
+    leave the braid, whose energy depends on it.
     """
-    if not held.is_minimum:
+    if not held.is_minimum or (problem.leaves and "pressure" not in held.names):
         return along(problem, held, start)
     u = np.zeros(problem.basis.unknowns) if start is None else start.u
     loads = np.zeros(problem.loads) if start is None else start.loads
@@ -45,7 +47,7 @@ def _minimum(
     if problem.basis.closes:
         constraints.append((CLOSURE, 0.0))
     task = Task(
-        evaluate=problem.balance,
+        evaluate=partial(problem.balance, pressure=float(loads[VOLUME])),
         curvature=problem.curvature,
         loads=loads,
         held=tuple(k for k, _ in constraints),
@@ -83,7 +85,7 @@ def equilibrium(problem: Problem, u: np.ndarray, loads: np.ndarray, iterations: 
 
 def looked_at(problem: Problem, u: np.ndarray, loads: np.ndarray, iterations: int = 0) -> tuple[Equilibrium, Any]:
     """A state, and its braid angles."""
-    a = problem.balance(u)
+    a = problem.balance(u, float(loads[1]))
     signs = np.concatenate([[1.0], -loads, np.zeros(3 - len(loads))])
     residual = imbalance(signs, a.gradients)
     return Equilibrium(problem, u, loads, a.totals, residual < 1e-8, residual, iterations), a.theta
@@ -92,7 +94,8 @@ def looked_at(problem: Problem, u: np.ndarray, loads: np.ndarray, iterations: in
 def at_rest(problem: Problem) -> Equilibrium:
     """The undeformed muscle without loads, whose length and volume are the units."""
     nothing = np.zeros(problem.basis.unknowns), np.zeros(problem.loads)
-    return Equilibrium(problem, *nothing, np.array([0.0, 1.0, 1.0, 0.0]), True, 0.0, 0)
+    totals = problem.balance(nothing[0]).totals if problem.leaves else np.array([0.0, 1.0, 1.0, 0.0])
+    return Equilibrium(problem, *nothing, totals, True, 0.0, 0)
 
 
 def along(

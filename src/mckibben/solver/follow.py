@@ -114,7 +114,7 @@ def follow(
 
         def newton(state: Unknowns) -> Correction:
             s = system(basis, on, state)
-            return correct(s, conditions(own, which, aim, on.unit, s.values, state.loads))
+            return correct(s, conditions(own, which, aim, on, s, state.loads))
 
         step = _take(newton, predict(g, now.done, aim - here), g.now, tolerance)
         moved = jnp.abs(psi @ (step.state.u - g.now.u)).max()

@@ -11,6 +11,8 @@ from jaxtyping import Float
 
 from mckibben.compiled.arrays import Array
 from mckibben.discretise.fields import Placed, place
+from mckibben.model.cylinder import inside_at_rest
+from mckibben.model.gap import leaves
 from mckibben.model.parameters import Number, Parameters
 from mckibben.solver.follow import follow
 from mckibben.solver.held import ROWS, Now, read_rows, rows_of, units
@@ -36,12 +38,13 @@ class Wanted(NamedTuple):
 def rest(on: Placed) -> Now:
     """What the undeformed muscle reads."""
     one = jnp.ones_like(on.unit[0])
-    return read_rows(on.unit, jnp.stack([one, one]), jnp.stack([0.0 * one, 0.0 * one]))
+    volume = inside_at_rest(on.p) / on.unit[2] if leaves(on.p) else one
+    return read_rows(on.unit, jnp.stack([one, volume]), jnp.stack([0.0 * one, 0.0 * one]), on.p)
 
 
 def reading(basis: Basis, on: Placed, state: Unknowns) -> Now:
     """What a state reads, in SI units."""
-    return read_rows(on.unit, system(basis, on, state).values, state.loads)
+    return read_rows(on.unit, system(basis, on, state).values, state.loads, on.p)
 
 
 def target(name: str, now: Now) -> Number:

@@ -14,7 +14,9 @@ import numpy as np
 from jaxtyping import Float
 
 from mckibben.compiled.arrays import Array
-from mckibben.model.parameters import Number
+from mckibben.discretise.fields import Placed
+from mckibben.model.parameters import Number, Parameters
+from mckibben.solver.system import System
 from mckibben.spec.loading import ATMOSPHERE
 
 __all__ = ["GASES", "NAMES", "Conditions", "Held", "Now", "conditions", "read_rows"]
@@ -32,14 +34,20 @@ class Now(NamedTuple):
     pressure: Number  #: gauge [Pa]
     closure: Number = 0.0  #: theta at the last end less that at the first [rad]
     moment: Number = 0.0  #: its multiplier, the closing moment [N m]
+    rubber: Number = 0.0  #: volume of the rubber that lies inside [m^3]
+
+    @property
+    def air(self) -> Number:
+        """What of the volume is not rubber [m^3]."""
+        return self.volume - self.rubber
 
 
 Row = Callable[[Now, Number], Number]
 
 
 def _sealed(exponent: float) -> Row:
-    """(P + atmosphere) V^n is that of the gas sealed in; t is its logarithm."""
-    return lambda now, t: jnp.log(now.pressure + ATMOSPHERE) + exponent * jnp.log(now.volume) - t
+    """(P + atmosphere) V^n, with V of the air, is that of the gas sealed in; t is its logarithm."""
+    return lambda now, t: jnp.log(now.pressure + ATMOSPHERE) + exponent * jnp.log(now.air) - t
 
 
 ROWS: dict[str, Row] = {
@@ -120,23 +128,26 @@ class Conditions(NamedTuple):
     by_target: Float[Array, " r"]
 
 
-def read_rows(unit: Array, values: Array, loads: Array) -> Now:
-    """What a state reads, of dimensionless totals (l) and loads (l)."""
+def read_rows(unit: Array, values: Array, loads: Array, p: Parameters) -> Now:
+    """What a state of a muscle reads, of dimensionless totals (l) and loads (l)."""
     parts = [values[k] * unit[1 + k] for k in range(len(values))]
     pulls = [loads[k] * unit[0] / unit[1 + k] for k in range(len(loads))]
-    return Now(parts[0], parts[1], pulls[0], pulls[1], *(one[2] for one in (parts, pulls) if len(values) > 2))
+    now = Now(parts[0], parts[1], pulls[0], pulls[1], *(one[2] for one in (parts, pulls) if len(values) > 2))
+    return now if p.tube is None else now._replace(rubber=p.tube.rubber)
 
 
-def conditions(
-    own: tuple[Row, ...], which: Array, targets: Array, unit: Array, values: Array, loads: Array
-) -> Conditions:
-    """The rows that hold, with their derivatives; `own` and `which` are those of `rows_of`."""
-    count, one = len(loads), jnp.ones_like(unit[0])
+def conditions(own: tuple[Row, ...], which: Array, targets: Array, on: Placed, s: System, loads: Array) -> Conditions:
+    """The rows that hold, with their derivatives; `own` and `which` are those of `rows_of`.
+
+    What a load changes of the totals while the shape stays counts as its own.
+    """
+    unit, values, count = on.unit, s.values, len(loads)
+    one = jnp.ones_like(unit[0])
     known = [(row, units(unit)[name] * one) for name, row in ROWS.items()] + [(row, one) for row in own]
 
     def held(which: Array, target: Array) -> tuple[Array, Array]:
         def row(x: Array) -> tuple[Array, Array]:
-            now = read_rows(unit, x[:count], x[count : 2 * count])
+            now = read_rows(unit, x[:count], x[count : 2 * count], on.p)
             found = jnp.stack([row(now, x[2 * count] * size) for row, size in known])[which]
             return found, found
 
@@ -146,4 +157,6 @@ def conditions(
     miss, slope = jax.vmap(held)(which, targets)
     size = jnp.linalg.norm(slope[:, : 2 * count], axis=1)
     miss, slope = miss / size, slope / size[:, None]
-    return Conditions(miss, slope[:, :count], slope[:, count : 2 * count], slope[:, 2 * count])
+    by_totals, by_loads = slope[:, :count], slope[:, count : 2 * count]
+    by_loads = by_loads if s.by_loads is None else by_loads + by_totals @ s.by_loads
+    return Conditions(miss, by_totals, by_loads, slope[:, 2 * count])

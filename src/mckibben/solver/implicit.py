@@ -33,7 +33,7 @@ def misses(
     basis, own = static
     on = place(basis, p, b)
     s = system(basis, on, state)
-    return jnp.concatenate([s.rest, conditions(own, which, targets, on.unit, s.values, state.loads).miss])
+    return jnp.concatenate([s.rest, conditions(own, which, targets, on, s, state.loads).miss])
 
 
 @partial(jax.custom_jvp, nondiff_argnums=(0,))
@@ -55,7 +55,7 @@ def _settle_jvp(static: tuple[Basis, Any], primals: Any, tangents: Any) -> tuple
     basis, own = static
     on = place(basis, p, b)
     s = system(basis, on, safe)
-    matrix = bordered(s, conditions(own, which, targets, on.unit, s.values, safe.loads))
+    matrix = bordered(s, conditions(own, which, targets, on, s, safe.loads))
     matrix = jnp.where(good, matrix, jnp.eye(len(matrix)))
     change = jax.jvp(lambda p, targets: misses(static, p, b, safe, which, targets), (p, targets), (dp, dtargets))[1]
     step = -jnp.linalg.solve(matrix, change)

@@ -16,6 +16,7 @@ from mckibben.discretise.fields import Placed, place, variables
 from mckibben.discretise.spectral import Line
 from mckibben.model.angle import radians
 from mckibben.model.energy import QUANTITIES, stored, works
+from mckibben.model.gap import inflated, leaves
 from mckibben.model.parameters import Number, Parameters
 from mckibben.solver.system import Unknowns, assemble, localise
 
@@ -45,14 +46,19 @@ class Balance(NamedTuple):
     gradients: Float[Array, "4 m"]
 
 
-@partial(kernel, often=True)
-def balance(basis: Basis, p: Parameters, b: Number, u: Float[Array, " m"]) -> Balance:
-    """By plain differentiation of the totals."""
+@kernel
+def balance(basis: Basis, p: Parameters, b: Number, u: Float[Array, " m"], pressure: Any = None) -> Balance:
+    """By plain differentiation of the totals, as quick when compiled with the least optimisation.
+
+    `pressure`, dimensionless, is that at which a chamber that may leave the braid is.
+    """
     on = place(basis, p, b)
     weights = jnp.asarray(basis.operators().weights) * on.jacobian
 
     def totals(u: Array) -> tuple[Array, tuple[Array, Array]]:
         at = basis.form.point(variables(basis, on, u), on.p)
+        if pressure is not None:
+            at = jax.vmap(lambda at: inflated(at, pressure * on.unit[0] / on.unit[2], on.p))(at)
         densities = jax.vmap(lambda at: jnp.stack([stored(at, on.p), *works(at, on.p)]))(at)
         found = weights @ densities / on.unit
         return found, (radians(at.theta), found)
@@ -134,9 +140,15 @@ class Problem:
         """How many loads are unknowns: force, pressure and, where equal end radii are a condition, closing moment."""
         return 3 if self.basis.closes else 2
 
-    def balance(self, u: np.ndarray) -> Balance:
-        """The four dimensionless quantities and their gradients."""
-        return Balance(*map(np.asarray, balance(self.basis, self.p, self.b, u)))
+    @property
+    def leaves(self) -> bool:
+        """Whether the chamber may leave the braid, so that energy and volume depend on the pressure as well."""
+        return leaves(self.p)
+
+    def balance(self, u: np.ndarray, pressure: float = 0.0) -> Balance:
+        """The four dimensionless quantities and their gradients, at a dimensionless pressure where that matters."""
+        at = (np.asarray(pressure),) if self.leaves else ()
+        return Balance(*map(np.asarray, balance(self.basis, self.p, self.b, u, *at)))
 
     def curvature(self, u: np.ndarray, shares: np.ndarray) -> np.ndarray:
         """Second derivatives by the unknowns of the four quantities, added up in shares."""

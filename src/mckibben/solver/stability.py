@@ -54,7 +54,7 @@ def tangents(
         local = localise(basis, on, state)
         s = assemble(basis, on, local, len(state.loads))
         found = stiffnesses(basis, on, local, s)
-        A, weight = grip(s, conditions(own, which, targets, on.unit, s.values, state.loads))
+        A, weight = grip(s, conditions(own, which, targets, on, s, state.loads))
         return found._replace(stiffness=s.stiffness + (A[1:2].T * weight[1:2]) @ A[1:2])
 
     return jax.vmap(one)(states)
@@ -63,8 +63,10 @@ def tangents(
 def of_states(
     problem: Problem, u: np.ndarray, loads: np.ndarray, names: tuple[Any, ...] = (), memory: Any = None
 ) -> Tangents:
-    """Tangents of states u (n, m) under loads (n, l) on a problem; only the gas among `names` counts."""
-    gas = next((name for name in names if name in GASES), "pressure")
+    """Tangents of states u (n, m) under loads (n, l) on a problem; only the gas among `names` counts, and a volume held
+    in a chamber that may leave the braid: it still gives way where that swells."""
+    softly = (*GASES, "volume") if problem.leaves else GASES
+    gas = next((name for name in names if name in softly), "pressure")
     own, which = rows_of(("length", gas), problem.loads)
     states = Unknowns(u, loads, memory)
     targets = np.zeros(problem.loads)

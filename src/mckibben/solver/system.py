@@ -21,6 +21,7 @@ from mckibben.discretise.fields import Integral, Placed, Variables, known, varia
 from mckibben.discretise.products import pairs, sandwich, swept
 from mckibben.model.angle import Known
 from mckibben.model.energy import remember, stored, works
+from mckibben.model.gap import found_hoop, inflated, leaves
 from mckibben.model.parameters import Number
 from mckibben.solver.trust_region import FLOOR
 
@@ -56,6 +57,7 @@ class Local(NamedTuple):
     works_first: tuple[tuple[Array, ...], ...]  #: for each local variable, their derivatives by it
     turns: tuple[tuple[Array, ...], ...]  #: for each integral, J d(rate)/dx of what the rate depends on
     bends: tuple[tuple[tuple[Array, ...], ...], ...]  #: J d2(rate)/dx2, the upper triangle
+    swells: Any = None  #: derivative of the volume's density by the pressure: (q); None where there is none
 
 
 class System(NamedTuple):
@@ -65,11 +67,13 @@ class System(NamedTuple):
     rest: Float[Array, " m"]  #: imbalance: the gradient
     gradients: Float[Array, "l m"]  #: of length, volume (and closure)
     values: Float[Array, " l"]
+    by_loads: Any = None  #: derivatives of the values by the loads (l, l), where a chamber has a gap to swell into
 
 
 def localise(basis: Any, on: Placed, state: Unknowns, share: Number = 1.0) -> Local:
     """Derivatives at the points of a state. `share` is that of the stored energy in the Lagrangian."""
     form, p, unit = basis.form, on.p, on.unit
+    P = state.loads[1] * unit[0] / unit[2]
     x = variables(basis, on, state.u)
     weight = jnp.asarray(basis.operators().weights) * on.jacobian
     count = len(x)
@@ -82,29 +86,36 @@ def localise(basis: Any, on: Placed, state: Unknowns, share: Number = 1.0) -> Lo
     def plain(near: Variables) -> Variables:
         return tuple(one.value if isinstance(one, Known) else one for one in near)
 
-    def density(values: Variables, near: Variables, memory: Any) -> Number:
+    def density(values: Variables, near: Variables, memory: Any, hoop: Any) -> Number:
         point = form.point(at(values, near), p)
         loads = zip(state.loads, works(point, p), unit[1:], strict=False)
-        return share * stored(point, p, memory) / unit[0] - sum(load * work / size for load, work, size in loads)
+        return share * stored(point, p, memory, P, hoop) / unit[0] - sum(
+            load * work / size for load, work, size in loads
+        )
 
-    def slopes(near: Variables, memory: Any) -> tuple[Any, Any, Any]:
+    def slopes(near: Variables, memory: Any, hoop: Any) -> tuple[Any, Any, Any]:
         values = plain(near)
-        derived = jax.value_and_grad(lambda *v: density(v, near, memory), tuple(range(count)))
+        derived = jax.value_and_grad(lambda *v: density(v, near, memory, hoop), tuple(range(count)))
         (value, first), change = jax.linearize(derived, *values)
         second = [change(*(jnp.full_like(value, i == k) for k, value in enumerate(values)))[1] for i in range(count)]
         return value, tuple(first), tuple(tuple(row[i:]) for i, row in enumerate(second))
 
-    def working(near: Variables) -> tuple[tuple[Array, ...], tuple[tuple[Array, ...], ...]]:
+    def working(near: Variables, hoop: Any) -> tuple[tuple[Array, ...], tuple[tuple[Array, ...], ...]]:
         """What loads do work on, and its derivatives by each local variable."""
 
         def densities(*values: Number) -> tuple[Number, ...]:
-            return tuple(
-                work / size for work, size in zip(works(form.point(at(values, near), p), p), sizes, strict=True)
-            )
+            point = inflated(form.point(at(values, near), p), P, p, hoop)
+            return tuple(work / size for work, size in zip(works(point, p), sizes, strict=True))
 
         values, sizes = plain(near), tuple(unit[1:])
         found, change = jax.linearize(densities, *values)
         return found, tuple(change(*(jnp.full_like(v, i == k) for k, v in enumerate(values))) for i in range(count))
+
+    def swelling(near: Variables, hoop: Any) -> Array:
+        """By how much the volume of a chamber grows with the pressure while the mesh stays."""
+        point = form.point(near, p)
+        grown: Array = jax.grad(lambda P: works(inflated(point, P, p, hoop), p)[1])(P)
+        return grown * unit[0] / unit[2] ** 2
 
     def turning(near: Variables, one: Integral) -> tuple[tuple[Array, ...], tuple[tuple[Array, ...], ...]]:
         values = plain(near)
@@ -121,8 +132,9 @@ def localise(basis: Any, on: Placed, state: Unknowns, share: Number = 1.0) -> Lo
         return tuple(first), tuple(tuple(row[i:]) for i, row in enumerate(second))
 
     near = known(form, x)
-    value, first, second = jax.vmap(slopes)(near, state.memory)
-    done, done_first = jax.vmap(working)(near)
+    hoops = jax.vmap(lambda near: found_hoop(form.point(near, p), P, p))(near) if leaves(p) else None
+    value, first, second = jax.vmap(slopes)(near, state.memory, hoops)
+    done, done_first = jax.vmap(working)(near, hoops)
     turned = [jax.vmap(partial(turning, one=one))(near) if one.by else ((), ()) for one in form.integrals]
     return Local(
         weight * value,
@@ -132,6 +144,7 @@ def localise(basis: Any, on: Placed, state: Unknowns, share: Number = 1.0) -> Lo
         tuple(tuple(weight * f for f in row) for row in done_first),
         tuple(tuple(on.jacobian * f for f in turns) for turns, _ in turned),
         tuple(tuple(tuple(on.jacobian * f for f in row) for row in bends) for _, bends in turned),
+        weight * jax.vmap(swelling)(near, hoops) if leaves(p) else None,
     )
 
 
@@ -140,7 +153,8 @@ def assemble(basis: Any, on: Placed, local: Local, count: int, together: bool = 
     rest = _gradient(basis, on, local, local.first)
     gradients = [_gradient(basis, on, local, tuple(f[k] for f in local.works_first)) for k in range(count)]
     values = jnp.stack([work.sum() for work in local.works[:count]])
-    return System(stiffness(basis, on, local, together), rest, jnp.stack(gradients), values)
+    by_loads = None if local.swells is None else jnp.zeros((count, count)).at[1, 1].set(local.swells.sum())
+    return System(stiffness(basis, on, local, together), rest, jnp.stack(gradients), values, by_loads)
 
 
 def system(basis: Any, on: Placed, state: Unknowns, together: bool = False) -> System:
@@ -226,7 +240,7 @@ def remembered(basis: Any, on: Placed, state: Unknowns) -> Unknowns:
     """A state that has been reached, with what its points keep of it for the next one."""
     if state.memory is None:
         return state
-    at = basis.form.point(variables(basis, on, state.u), on.p)
+    at = basis.form.point(variables(basis, on, state.u), on.p)  # what crossings keep knows nothing of the chamber
     return state._replace(memory=jax.vmap(lambda at, kept: remember(at, on.p, kept))(at, state.memory))
 
 

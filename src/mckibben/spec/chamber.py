@@ -7,7 +7,7 @@ from enum import StrEnum
 
 from mckibben.spec.declared import Reads
 from mckibben.spec.errors import SpecError
-from mckibben.spec.fields import choice, part, quantity, spec
+from mckibben.spec.fields import choice, part, quantity, spec, switch
 from mckibben.spec.laws import LAWS, Law
 from mckibben.units import Number, is_traced, show
 
@@ -33,13 +33,14 @@ _DIAMETERS = ("outer_diameter", "inner_diameter")
 
 @spec("chamber")
 class Chamber:
-    """The incompressible elastomer tube of the braid: it touches the braid everywhere and deforms with it.
+    """The incompressible elastomer tube of the braid, which goes with the braid everywhere, or may leave it.
 
     Either a `thickness`: the wall is made on the radius R0 of the braid, outside of it with a cross-section of
     A0 = pi t0 (t0 + 2 R0) (Eq. 26), or inside of it with A0 = pi t0 (2 R0 - t0). Or the two diameters of a tube as
-    sold, which is smaller than the braid and is stretched from the start, by R0 over its outer radius. Until it has
-    been blown up to the braid a real tube does not touch it: the model holds the two together, and
-    `contact_pressure` in a result tells where a real one would not touch.
+    sold, which is smaller than the braid. Until it has been blown up to the braid a real tube does not touch it. The
+    model holds the two together, so that the tube is stretched from the start, by R0 over its outer radius, and
+    `contact_pressure` in a result tells where a real one would not touch; or, with `gap`, lets it have a radius of its
+    own until it touches: `contact` in a result is the share of the length where it does.
 
     Args:
         thickness: wall thickness t0 as made [m], above 0.
@@ -53,10 +54,12 @@ class Chamber:
             it is left out. A shorter one is stretched from the start, by H0 over it.
         wall: "thin" (the paper's, and where it is left out): the whole wall has the stretches of where it rides on the
             braid. "thick": its stretches are those of an incompressible tube, integrated through the wall.
+        gap: whether a chamber inside may leave the braid: then it is a tube blown up alone until it touches, and what
+            it has of the braid is the axial stretch beside it. Volumes are then those inside its outer face.
 
     Raises:
         SpecError: for a value out of range, a law that is none of these, a thickness beside diameters, or half of
-            these.
+            these; for a gap of a chamber that lies outside.
 
     >>> chamber = mk.Chamber(thickness="1 mm", law=mk.MooneyRivlin(c1="8.5 kPa"))
     >>> chamber.thickness  # m
@@ -93,6 +96,9 @@ class Chamber:
         size=(1e-6, 1e3), default=None, doubt=(10.0, 1e4),
     )  # fmt: skip
     wall: Reads[Wall | None] = choice(Wall, meaning="how the wall is taken; thin", default=None)
+    gap: Reads[bool] = switch(
+        meaning="whether a chamber inside may leave the braid until it is blown up to it", default=False
+    )
 
     def __attrs_post_init__(self) -> None:
         given = [name for name in _DIAMETERS if getattr(self, name) is not None]
@@ -104,6 +110,10 @@ class Chamber:
         if len(given) == 1:
             missing = next(name for name in _DIAMETERS if name not in given)
             raise SpecError(f"chamber.{missing}", allowed=f"is missing beside {given[0]}", advice=both)
+        if self.gap and not self.inside:
+            said = "needs a chamber inside the braid: the wall of this one lies around the fibres and goes with them"
+            advice = 'give the diameters of a tube, or lies = "inside", or leave gap out'
+            raise SpecError("chamber.gap", "true", said, advice)
         if self.outer_diameter is None or self.inner_diameter is None:
             return
         if self.lies == Side.OUTSIDE:

@@ -146,8 +146,8 @@ class Step:
         pressure: gauge pressure [Pa], not below minus one atmosphere (-101325 Pa) nor above 10,000 bar.
         volume: volume inside the braid [m^3], above 0.
         gas: "isothermal" or "adiabatic": the gas inside as the step begins is sealed in, and pressure and volume follow
-            its law. In place of one of the two quantities; the other is length or force. Not for a chamber that lies
-            inside the braid, whose rubber is no gas.
+            its law, with the volume of the air: that without rubber which lies inside. In place of one of the two
+            quantities; the other is length or force.
         along: "values" (default): state by state at the values given. "branch": along the curve of states, also past
             limit points, where the value that is varied turns back.
         points: number of states; by default 21 on a ramp, as many as a list has, 1 if nothing varies.
@@ -193,10 +193,7 @@ class Step:
 
 
 def _in_lengths(step: Step, muscle: Muscle) -> Step:
-    """A step with lengths in place of contractions, as they are for a muscle. SpecError for gas beside rubber."""
-    if step.gas is not None and muscle.chamber is not None and muscle.chamber.inside:
-        said = "would take all of the volume inside the braid for gas, and here the rubber lies inside too"
-        raise SpecError("step.gas", str(step.gas), said, 'hold pressure or volume, or let the wall lie "outside"')
+    """A step with lengths in place of contractions, as they are for a muscle."""
     if step.length is None or step.length.unit == "m":
         return step
     return evolved(step, length=lengths(step.length, muscle.rest_length))

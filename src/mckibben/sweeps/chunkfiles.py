@@ -18,7 +18,7 @@ import numpy as np
 from numcodecs import VLenUTF8
 
 from mckibben import disk
-from mckibben.sweeps.outcome import DESIGN, STATES, STATUSES, Columns, Kept, Status
+from mckibben.sweeps.outcome import DESIGN, LATER, STATES, STATUSES, Columns, Kept, Status
 
 __all__ = ["MARK", "ChunkFiles", "digest", "identity_digest"]
 
@@ -47,6 +47,11 @@ class ChunkFiles:
     steps: int
     noted: bool  #: whether every chunk has its note
 
+    @property
+    def names(self) -> tuple[str, ...]:
+        """The variables of the store; one of an earlier version lacks some."""
+        return tuple(name for name in _NAMES if name not in LATER or (self.path / name).exists())
+
     def file(self, name: str, index: int) -> Path:
         return self.path / name / (f"c.{index}.0" if name in STATES else f"c.{index}")
 
@@ -59,7 +64,7 @@ class ChunkFiles:
 
     def contents(self, columns: Columns) -> dict[str, bytes]:
         """The designs of a chunk as the bytes of its files, by variable."""
-        return {name: self._encoded((STATES | DESIGN)[name], columns[name]) for name in _NAMES}
+        return {name: self._encoded((STATES | DESIGN)[name], columns[name]) for name in self.names}
 
     def _encoded(self, kept: Kept, values: np.ndarray) -> bytes:
         """Values as a chunk file; the last one is filled up."""
@@ -78,7 +83,7 @@ class ChunkFiles:
         """Write the missing notes on chunks that are there and have the form of whole ones. OSError."""
         for index, wrong in self._surveyed().items():
             if wrong == [] and not self.note(index).exists():
-                contents = {name: self._bytes(name, index) for name in _NAMES}
+                contents = {name: self._bytes(name, index) for name in self.names}
                 disk.replace(self.note(index), self.noting(index, contents), alone=True)
 
     def damage(self, index: int) -> list[str] | None:
@@ -90,11 +95,15 @@ class ChunkFiles:
             ours = isinstance(said, dict) and (said.get("sweep"), said.get("chunk")) == (self.sweep, index)
         except FileNotFoundError:
             if not self.noted:
-                return [name for name in _NAMES if not self._fits(name, index)]
+                return [name for name in self.names if not self._fits(name, index)]
             ours = False
         except (ValueError, RecursionError):
             ours = False
-        return [name for name in _NAMES if digest(self._bytes(name, index)) != said.get(name)] if ours else ["its note"]
+        return (
+            [name for name in self.names if digest(self._bytes(name, index)) != said.get(name)]
+            if ours
+            else ["its note"]
+        )
 
     def damaged(self) -> dict[int, list[str]]:
         """The chunks that are there and not whole, with what is wrong of each."""

@@ -15,6 +15,7 @@ import numpy as np
 
 from mckibben.discretise.spectral import Line
 from mckibben.model.parameters import Parameters, numbers
+from mckibben.solver.bench import jumps
 from mckibben.spec import Along, BlockedForce, Braid, CustomLaw, Ends, Muscle, Path, Protocol, SpecError, Step, Test
 from mckibben.spec import numbers as leaves_of
 from mckibben.spec.angle import from_parallels
@@ -124,6 +125,7 @@ def grouped(muscle: Muscle, test: Test, values: dict[str, np.ndarray], index: np
     count = len(index)
     valid = np.broadcast_to(_valid(several), (count,))
     p: Parameters = jax.tree.map(lambda x: np.array(np.broadcast_to(np.asarray(x, float), (count,))), numbers(several))
+    valid = valid & ~jumps(p)
     present = {"length": p.rest, "force": np.zeros(count), "pressure": np.zeros(count)}
     rows, corners = [], []
     for k, step in enumerate(steps):

@@ -18,6 +18,7 @@ from mckibben.results.verdict import Verdict
 
 __all__ = [
     "DESIGN",
+    "LATER",
     "METHODS",
     "STATES",
     "STATUSES",
@@ -81,8 +82,8 @@ def _flags(words: tuple[StrEnum, ...], meaning: str, absent: str) -> Kept:
 
 
 _NUMBERS = (
-    "length", "contraction", "force", "pressure", "volume", "energy_bending_1", "energy_bending_2", "energy_twist",
-    "energy_chamber", "energy", "error_estimate", "residual",
+    "length", "contraction", "force", "pressure", "volume", "air_volume", "energy_bending_1", "energy_bending_2",
+    "energy_twist", "energy_chamber", "energy", "error_estimate", "residual",
 )  # fmt: skip
 _LARGEST = {"peak_fibre_tension": "fibre_tension", "largest_radius": "r"}
 _COUNTS = ("modes_length_control", "modes_force_control", "modes_antisymmetric")
@@ -97,6 +98,9 @@ STATES: dict[str, Kept] = (
     | {name: Kept("int8", {"long_name": STEP[name][1], "units": "1"}) for name in _COUNTS}
 )
 """Variables per design and state."""
+
+LATER = ("air_volume",)
+"""Variables that stores of earlier versions do not hold; NaN there."""
 
 DESIGN: dict[str, Kept] = {
     "reason": Kept("str", {"long_name": "why a design is not complete"}),

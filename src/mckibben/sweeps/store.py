@@ -29,7 +29,7 @@ from mckibben.spec.errors import SpecError
 from mckibben.sweeps.chunkfiles import MARK, ChunkFiles, identity_digest
 from mckibben.sweeps.dataset import arranged
 from mckibben.sweeps.description import DIGESTS, check_same, damage, describe, mend, sweep_in
-from mckibben.sweeps.outcome import DESIGN, STATES, Columns
+from mckibben.sweeps.outcome import DESIGN, LATER, STATES, Columns
 from mckibben.sweeps.plan import Plan
 from mckibben.sweeps.trouble import SweepError
 
@@ -170,13 +170,14 @@ def load(path: str | PathLike[str]) -> xr.Dataset:
         said = f"is damaged: its description ({wrong[0]}{more}) is not as written"
         raise SpecError(str(path), allowed=said, advice=MENDED)
     try:
-        stored = xr.open_zarr(path, consolidated=True, decode_times=False)[[*STATES, *DESIGN]]
+        whole = xr.open_zarr(path, consolidated=True, decode_times=False)
+        stored = whole[[name for name in (*STATES, *DESIGN) if name not in LATER or name in whole]]
         stored.attrs.pop(DIGESTS, None)
         noted, sweep = DIGESTS in document["attributes"], identity_digest(held)
         count, steps = stored["force"].shape
         files = ChunkFiles(Path(path), sweep, count, int(held["chunk"]), steps, noted)
         _check_chunks(str(path), files)
-        return arranged(_without_pending(stored, files.there()).chunk(design=-1))
+        return arranged(_with_later(_without_pending(stored, files.there()).chunk(design=-1)))
     except SpecError:
         raise
     except _BROKEN as error:
@@ -208,6 +209,8 @@ def _without_pending(stored: xr.Dataset, there: np.ndarray) -> xr.Dataset:
     edges = [0, *(np.flatnonzero(np.diff(there)) + 1).tolist(), len(there)]
     made = {}
     for name, kept in (STATES | DESIGN).items():
+        if name not in stored:
+            continue
         data = stored[name].data
         parts = []
         for first, last in pairwise(edges):
@@ -216,3 +219,12 @@ def _without_pending(stored: xr.Dataset, there: np.ndarray) -> xr.Dataset:
             parts.append(part if there[first] else dask.array.full(part.shape, kept.fill, kind, chunks=part.chunks))
         made[name] = (stored[name].dims, dask.array.concatenate(parts), stored[name].attrs)
     return stored.assign(made)
+
+
+def _with_later(stored: xr.Dataset) -> xr.Dataset:
+    """With what a store of an earlier version does not hold, as NaN."""
+    lacking = [name for name in LATER if name not in stored]
+    return stored.assign({
+        name: (stored["force"].dims, dask.array.full_like(stored["force"].data, np.nan), STATES[name].attributes)
+        for name in lacking
+    })  # fmt: skip
