@@ -368,6 +368,9 @@ def test_a_frequency_response_has_the_frequency_of_closed_air() -> None:
     assert found.damping == pytest.approx(30.0 / (2.0 * math.sqrt(5.0 * k)), rel=1e-5)
     s = 2j * math.pi * found.frequency
     np.testing.assert_allclose(found.response, 1.0 / (5.0 * s**2 + 30.0 * s + k), rtol=1e-5)
+    drawn = mk.plot(found).axes[0]
+    assert drawn.get_ylabel() == "Length by push (mm/N)"
+    np.testing.assert_allclose(drawn.lines[0].get_ydata(), 1e3 * found.gain)
 
 
 @pytest.mark.parametrize("by", ["push", "command"])
@@ -546,3 +549,29 @@ def test_a_pair_is_drawn_shown_and_summed_up() -> None:
     assert [line.get_label() for line in axes[0].lines] == ["angle", "target"]
     assert {"angle", "force of the agonist", "force of the antagonist"} <= set(motion.summary().index)
     assert "data:image/png" in motion._repr_html_()
+
+
+@settings(max_examples=30)
+@given(st.data())
+def test_no_rig_hangs_and_energies_add_up(data: st.DataObject) -> None:
+    """Masses, stops, friction, cables and pulses of all kinds come to their end, with all energy accounted for."""
+    pick = data.draw
+    load = mk.Load(
+        mass=10.0 ** pick(st.floats(-1.0, 1.3)), gravity=pick(st.sampled_from([0.0, 9.81])),
+        damping=pick(st.sampled_from([0.0, 30.0])), friction=pick(st.sampled_from([0.0, 5.0])),
+        stop_low=pick(st.sampled_from([None, 0.092])), stop_high=0.11, slack=pick(st.booleans()),
+        push=pick(st.sampled_from([None, mk.Sine(40.0, "5 Hz"), mk.Jump(-50.0, at="0.1 s")])),
+    )  # fmt: skip
+    command = pick(st.sampled_from([1.0, mk.PWM(0.5, "20 Hz"), mk.PID(of="length", target="97 mm", kp=300.0)]))
+    rig = attrs.evolve(
+        LIFT, load=load, command=command, pressure=pick(st.floats(1e3, 2e5)),
+        air=pick(st.sampled_from([mk.Isothermal(), mk.WallHeat(conductance=0.5)])),
+        viscosity=pick(st.sampled_from([None, *(mk.Viscosity(damping=20.0, stiffness=k) for k in (None, 500.0))])),
+    )  # fmt: skip
+    motion = mk.simulate(rig, until="0.3 s", chart=Cylinder(k=300.0), points=31)
+    assert motion.complete
+    assert -1e-9 <= motion.length.max() - 0.11 <= 1e-9 or motion.length.max() < 0.11 or load.slack
+    moved = max(float(np.abs(motion.of(name)).max()) for name in ("enthalpy", "work", "lost"))
+    assert float(np.abs(motion.of("balance")).max()) < 1e-3 * max(moved, 1e-2)
+    if load.slack:
+        assert motion.force.min() > -1e-3

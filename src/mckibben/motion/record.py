@@ -25,6 +25,8 @@ if TYPE_CHECKING:
 __all__ = ["recorded"]
 
 NAMES = ("agonist", "antagonist")
+UNBALANCED = 1e-3
+"""Error of the energies, over the largest of them, that is told."""
 PUSHES = 1e-3
 """Share of the largest force from which a muscle that pushes is told of."""
 
@@ -58,7 +60,7 @@ def recorded(plant: Plant, done: Driven, method: str, tolerance: float) -> Motio
         coords["muscle"] = ("muscle", np.array(NAMES), {})
     for _, array, *_ in variables.values():
         array.flags.writeable = False
-    return Motion(_dataset(variables, coords, _about(plant, done, seen, method, tolerance)))
+    return Motion(_dataset(variables, coords, _about(plant, done, seen, variables, method, tolerance)))
 
 
 def _dataset(variables: dict[str, Any], coords: dict[str, Any], about: dict[str, Any]) -> xr.Dataset:
@@ -99,12 +101,14 @@ def _of_rig(plant: Plant, y: np.ndarray, muscles: dict[str, np.ndarray]) -> dict
     return found
 
 
-def _about(plant: Plant, done: Driven, seen: dict[str, np.ndarray], method: str, tolerance: float) -> dict[str, Any]:
+def _about(
+    plant: Plant, done: Driven, seen: dict[str, np.ndarray], variables: dict[str, Any], method: str, tolerance: float
+) -> dict[str, Any]:
     rig = plant.rig
     assumed = sorted({name for muscle in rig.muscles for name in muscle.assumed})
     return {
         "rig": rig_to_toml(rig, allow_function=True), "title": _title(plant), "reason": done.reason,
-        "notes": "\n".join(_notes(plant, done, seen)), "events": json.dumps(done.events), "method": method,
+        "notes": "\n".join(_notes(plant, done, seen, variables)), "events": json.dumps(done.events), "method": method,
         "tolerance": float(tolerance), "steps": done.steps, "load": rig.load.kind,
         "supplied": float(plant.supplied), "atmosphere": float(plant.atmosphere), "temperature": float(plant.around),
         "assumed": ", ".join(assumed),
@@ -127,7 +131,7 @@ def _title(plant: Plant) -> str:
     return f"{names} on a pulley of {show(load.radius, 'm', 4)}"
 
 
-def _notes(plant: Plant, done: Driven, seen: dict[str, np.ndarray]) -> list[str]:
+def _notes(plant: Plant, done: Driven, seen: dict[str, np.ndarray], variables: dict[str, Any]) -> list[str]:
     found = []
     times = np.array(done.times)
     for k in range(plant.n):
@@ -142,12 +146,22 @@ def _notes(plant: Plant, done: Driven, seen: dict[str, np.ndarray]) -> list[str]
         if pushing.any() and not plant.rig.held and not plant.slackens:
             at = show(float(times[pushing][0]), "s", 4)
             found.append(f"{name} pushes, first at {at}: on a cable it would be slack (slack = true)")
+    found += _of_balance(variables)
     for chart in plant.charts[: 1 if len({id(one) for one in plant.charts}) == 1 else plant.n]:
         found += _of_map(chart)
     assumed = {name for muscle in plant.rig.muscles for name in muscle.assumed}
     if assumed:
         found.append(f"assumed, not measured: {', '.join(sorted(assumed))}")
     return found
+
+
+def _of_balance(variables: dict[str, Any]) -> list[str]:
+    """Whether the energies do not add up as well as they should."""
+    off = float(np.abs(variables["balance"][1]).max())
+    moved = max(float(np.abs(variables[name][1]).max()) for name in ("enthalpy", "work", "lost", "pushed", "kinetic"))
+    if off <= UNBALANCED * moved:
+        return []
+    return [f"the energies add up to {off:.2g} J only, of {moved:.2g} J moved: ask for a smaller tolerance"]
 
 
 def _of_map(chart: Mapped) -> Sequence[str]:

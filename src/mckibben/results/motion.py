@@ -61,8 +61,15 @@ class Motion(Shown):
     Args:
         data: xarray Dataset over `time` [s] with all that was seen, SI; of two muscles over `muscle` too.
 
-    >>> motion = mk.load("motion.nc")  # doctest: +SKIP
-    >>> motion.length[-1]  # doctest: +SKIP
+    >>> rig = mk.Rig(
+    ...     muscle=mk.presets.paper(), load=mk.Held(length="100 mm"), command=1.0,
+    ...     supply=mk.Supply(gauge="2 bar"), valve=mk.Valve(C="0.1 L/s/bar", b=0.3),
+    ... )
+    >>> motion = mk.simulate(rig, until="1 s")
+    >>> motion
+    <Motion: "paper" held at 100 mm, 1 s, 0.07 normal litres>
+    >>> motion.complete, motion.inside, float(motion.force[-1].round(1))  # N
+    (True, True, 90.5)
     """
 
     data: xr.Dataset

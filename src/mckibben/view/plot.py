@@ -9,6 +9,7 @@ from matplotlib.figure import Figure
 
 from mckibben.data.values import Data
 from mckibben.potential.chart import Chart
+from mckibben.results.answers import Bode
 from mckibben.results.design import Designed
 from mckibben.results.effects import Effects
 from mckibben.results.fit import Fitted
@@ -20,6 +21,7 @@ from mckibben.spec import BlockedForce, FreeContraction, Path, Protocol
 from mckibben.spec.errors import SpecError, nearest
 from mckibben.units import show
 from mckibben.view import curves, maps, style
+from mckibben.view.bode import answered
 from mckibben.view.chart import charted
 from mckibben.view.design import designed
 from mckibben.view.effects import bars
@@ -55,7 +57,7 @@ def plot(result: Any, kind: str = "auto", data: Any = None) -> Figure:
     tornado chart, tolerances as distributions with the part of each number, effects as bars, a fit as its forces over
     the measured ones, with what is left, a design as the force of the best over its contraction with what was demanded,
     or as its front, a map that `chart` made as its forces over contraction, and over the range with its edges, a
-    motion as what moves, pressure, force and air over time.
+    motion as what moves, pressure, force and air over time, a frequency response as gain and phase.
 
     Args:
         result: what one of these calls gave, or several results of one kind of test by their names, as
@@ -94,7 +96,7 @@ def plot(result: Any, kind: str = "auto", data: Any = None) -> Figure:
         return _family(result, kind)
     own: dict[type, Callable[[Any], Figure]] = {
         Sensitivity: tornado, Tolerances: scatter, Effects: bars, Fitted: fitted, Designed: designed,
-        Chart: charted, Motion: moved,
+        Chart: charted, Motion: moved, Bode: answered,
     }  # fmt: skip
     draw = next((draw for kinds, draw in own.items() if isinstance(result, kinds)), None) or _of_dataset(result)
     if kind != "auto":
