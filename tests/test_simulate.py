@@ -575,3 +575,20 @@ def test_no_rig_hangs_and_energies_add_up(data: st.DataObject) -> None:
     assert float(np.abs(motion.of("balance")).max()) < 1e-3 * max(moved, 1e-2)
     if load.slack:
         assert motion.force.min() > -1e-3
+
+
+def test_where_no_map_can_be_made_it_is_said_what_to_do(monkeypatch: pytest.MonkeyPatch) -> None:
+    asked: list[tuple[float, float]] = []
+
+    def fails(muscle: mk.Muscle, *, length: tuple[float, float], pressure: tuple[float, float]) -> None:
+        asked.append(length)
+        raise mk.SpecError("chart", allowed="no stable state was found")
+
+    monkeypatch.setattr("mckibben.charts.chart.chart", fails)
+    stretches = mk.presets.get("pet-6")  # whose fibres stretch: it has no full extension
+    rig = attrs.evolve(HELD, muscle=stretches, supply=mk.Supply(gauge="3.3 bar"))
+    with pytest.raises(
+        mk.SpecError, match=r"none can be made over .* 0 to 4 bar \(chart: no stable .*chart=mk.chart\("
+    ):
+        mk.simulate(rig, until="1 s")
+    assert 1.1 * stretches.rest_length < asked[0][1] < 2.0 * stretches.rest_length

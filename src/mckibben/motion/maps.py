@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from functools import lru_cache
 from typing import Any
 
@@ -9,6 +10,7 @@ from mckibben.motion.mapped import Mapped
 from mckibben.spec.errors import SpecError
 from mckibben.spec.muscle import Muscle
 from mckibben.spec.rig import Rig
+from mckibben.units import show
 
 __all__ = ["maps_of"]
 
@@ -52,6 +54,16 @@ def _made(muscle: Muscle, top: float) -> Any:
     from mckibben.charts.chart import chart as make  # here, because a map that is given needs no JAX
     from mckibben.model.extension import longest
 
-    most = float(longest(muscle))
-    low, high = SHORT * float(muscle.rest_length), LONG * most
-    return make(muscle, length=(low, high), pressure=(0.0, top))
+    low, high = SHORT * float(muscle.rest_length), LONG * _most(float(longest(muscle)), muscle)
+    try:
+        return make(muscle, length=(low, high), pressure=(0.0, top))
+    except SpecError as error:
+        between = f"{show(low, 'm', 4)} to {show(high, 'm', 4)} and 0 to {show(top, 'Pa', 4)}"
+        said = f"is left out, and none can be made over {between} ({error})"
+        advice = "make one over what the rig needs: chart=mk.chart(muscle, length=..., pressure=...)"
+        raise SpecError("simulate.chart", allowed=said, advice=advice) from error
+
+
+def _most(longest: float, muscle: Muscle) -> float:
+    """Full extension [m]; of fibres that stretch, which have none, the length at which they would be straight."""
+    return longest if math.isfinite(longest) else float(muscle.braid.length) / math.sin(float(muscle.braid.angle))
