@@ -1,7 +1,10 @@
 """Maps in other programs, each run there: FMUs by fmpy, models by MuJoCo."""
 
 import math
+import re
 import shutil
+import subprocess
+import sys
 import zipfile
 from collections.abc import Callable, Iterator
 from pathlib import Path
@@ -388,6 +391,34 @@ def test_the_map_itself_in_mujoco_by_a_callback(chart: mk.Chart, tmp_path: Path)
     assert (model.actuator_gainprm == kept).all()
     with pytest.raises(mk.SpecError, match=r"muscel.*did you mean .muscle."), mk.in_mujoco(model, {"muscel": chart}):
         pass
+
+
+@needs_compiler
+@pytest.mark.skipif(sys.platform == "win32", reason="the command in the file is one for a shell")
+def test_the_map_itself_in_mujoco_by_a_plugin(chart: mk.Chart, tmp_path: Path) -> None:
+    text = mk.export(chart, tmp_path / "tested.c", name="tested").read_text()
+    command = re.search(r"M=\$.*\n.*-lm", text)
+    extension = re.search(r"<extension>.*</extension>", text)
+    actuator = re.search(r"<plugin name.*?/>", text, re.DOTALL)
+    assert command and extension and actuator  # noqa: PT018
+    said = command[0].replace("python", sys.executable).replace("-O2", "-O1 -Wall -Wextra -Werror")
+    subprocess.run(["sh", "-c", said], cwd=tmp_path, check=True)
+    mujoco.mj_loadPluginLibrary(str(tmp_path / "tested.so"))
+
+    model = mk.export(chart, tmp_path / "tested.xml", name="tested", mass=4.0).read_text()
+    model = re.sub(r"<general.*?/>", actuator[0], model, flags=re.DOTALL)
+    model = mujoco.MjModel.from_xml_string(model.replace("<worldbody>", f"{extension[0]}<worldbody>"))
+    data = mujoco.MjData(model)
+    for length, pressure in np.random.default_rng(1).uniform([0.03, 0.0], [0.15, 3e5], (50, 2)):
+        data.qpos[0] += data.ten_length[0] - length
+        data.act[0] = pressure
+        mujoco.mj_forward(model, data)
+        expected = -max(float(chart.force(data.ten_length[0], pressure)), 0.0)
+        assert data.actuator_force[0] == pytest.approx(expected, rel=1e-12, abs=1e-10)
+    mujoco.mj_resetDataKeyframe(model, data, 0)
+    data.ctrl[0] = 2e5
+    mujoco.mj_step(model, data, 16000)
+    assert data.ten_length[0] == pytest.approx(float(chart.length_for(2e5, 4.0 * GRAVITY)), rel=1e-9)
 
 
 def test_commands_write_them_and_say_the_error(chart: mk.Chart, tmp_path: Path) -> None:

@@ -32,7 +32,7 @@ def export(
             "--output",
             "-o",
             metavar="FILE",
-            help="C (.h), Python (.py), FMI (.fmu), MuJoCo (.xml), or tables: .csv, .mat, .json",
+            help="C (.h), Python (.py), FMI (.fmu), MuJoCo (.xml, .c), or tables: .csv, .mat, .json",
         ),
     ],
     length: Annotated[str | None, typer.Option(metavar="LENGTHS", help='of a muscle: "60 mm to 115 mm"')] = None,
@@ -52,7 +52,8 @@ def export(
 
     C and Python are the map itself, with its slopes, and go on smoothly outside of its range. Tables are over even
     lengths and pressures, in SI units. An FMU is compiled from C, which it holds as well, and needs no Python. A model
-    for MuJoCo has an affine actuator; its largest error is printed, and stands in the file.
+    for MuJoCo (.xml) has an affine actuator; its largest error is printed, and stands in the file. A plugin (.c) is the
+    map itself, for MuJoCo alone.
 
     The exit code is 3 if the error of a map that is made here is above the tolerance.
     """

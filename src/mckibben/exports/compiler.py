@@ -17,7 +17,7 @@ from mckibben.spec.errors import SpecError
 __all__ = ["compiled", "compiler", "library_place"]
 
 TRIED = ("cc", "gcc", "clang")
-FLAGS = ("-std=c99", "-O2", "-ffp-contract=off", "-fvisibility=hidden", "-shared")
+FLAGS = ("-std=c99", "-O2", "-funroll-loops", "-ffp-contract=off", "-fvisibility=hidden", "-shared")
 INSTALL = {
     "linux": "apt install gcc (Debian, Ubuntu) or dnf install gcc (Fedora)",
     "darwin": "xcode-select --install",

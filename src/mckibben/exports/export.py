@@ -13,6 +13,7 @@ from mckibben.exports.compiler import compiler
 from mckibben.exports.fmu import as_fmu
 from mckibben.exports.lookup import as_json, as_mat
 from mckibben.exports.mjcf import as_mjcf
+from mckibben.exports.mjplugin import as_plugin
 from mckibben.files.store import suffix_of
 from mckibben.potential.c_source import check_name
 from mckibben.potential.chart import Chart
@@ -26,7 +27,7 @@ __all__ = ["FORMATS", "How", "export", "how"]
 FORMATS = {
     ".h": "C99: the map itself", ".py": "Python with NumPy alone: the map itself", ".csv": "a table",
     ".mat": "tables for MATLAB and Simulink", ".json": "tables", ".fmu": "FMI 2.0, for co-simulation: the map itself",
-    ".xml": "MuJoCo: an affine actuator",
+    ".xml": "MuJoCo: an affine actuator", ".c": "MuJoCo: a plugin with the map itself",
 }  # fmt: skip
 """Endings and what they stand for."""
 MOST = 2000
@@ -51,6 +52,7 @@ _WRITERS: dict[str, Callable[[Chart, How], bytes | str]] = {
     ".json": lambda made, how: as_json(made, *how.points),
     ".fmu": lambda made, how: as_fmu(made, how.name, how.mass),
     ".xml": lambda made, how: as_mjcf(made, how.name, how.mass),
+    ".c": lambda made, how: as_plugin(made, how.name),
 }
 
 
@@ -93,7 +95,8 @@ def export(
     volume, their slopes and the largest radius out. With a mass it moves: the command of a valve (ISO 6358) and a push
     in; length, speed, pressure and the state of the air out; conductances, supply and so on are its parameters.
     `.xml` is a model for MuJoCo: a mass that hangs on the muscle, a tendon with an affine actuator whose activation is
-    the pressure. How far its force is off the map stands in the file; `in_mujoco` gives it the map itself.
+    the pressure. How far its force is off the map stands in the file. The map itself is what `in_mujoco` gives it, in
+    Python, or `.c`, an engine plugin whose head says how it is compiled and put into a model.
 
     Args:
         muscle: a map that `chart` gave, or a muscle, of which one is made.

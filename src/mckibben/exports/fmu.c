@@ -13,7 +13,7 @@
 #include <string.h>
 
 typedef struct {
-    double value[64], state[8];
+    double value[64], state[16];
     void (*log)(void *, const char *, int, const char *, const char *, ...);
     void *environment;
     char name[128];
@@ -142,8 +142,9 @@ static int set(Instance *it, const unsigned vr[], size_t n, const double *reals,
         if (kind == OUTPUT) return wrong(it, "an output cannot be set");
         if (kind == PARAMETER && it->phase == 2) return wrong(it, "a parameter cannot be set after the start");
         if (!flags && !(fabs(reals[k]) < 1e300)) return wrong(it, "values must be finite numbers");
-        it->value[vr[k]] = flags ? flags[k] != 0 : reals[k];
-        it->stale = it->phase == 2 ? 1 : 2;
+        const double value = flags ? flags[k] != 0 : reals[k];
+        if (value != it->value[vr[k]]) it->stale = it->phase == 2 ? 1 : 2;
+        it->value[vr[k]] = value;
     }
     return OK;
 }

@@ -47,13 +47,14 @@ def in_mujoco(model: Any, charts: Mapping[str, Chart], *, slack: bool = True) ->
         raise SpecError("in_mujoco", allowed="takes MuJoCo", advice='pip install "mckibben[mujoco]"') from error
     found = {_actuator(mujoco, model, name): chart.at for name, chart in charts.items()}
     kept = [array.copy() for array in (model.actuator_gaintype, model.actuator_biastype, model.actuator_gainprm)]
+    control = getattr(model, "actuator_ctrladr", range(len(model.actuator_gaintype)))  # before 4.0 one each
     before: Callable[..., float] | None = mujoco.get_mjcb_act_bias()
 
     def bias(m: Any, d: Any, k: int) -> float:
         if k not in found:
             return before(m, d, k) if before else 0.0
         at = m.actuator_actadr[k]
-        pressure = d.act[at] if at >= 0 else d.ctrl[m.actuator_ctrladr[k]]
+        pressure = d.act[at] if at >= 0 else d.ctrl[control[k]]
         force = found[k](float(d.actuator_length[k]), float(pressure)).force
         return -max(force, 0.0) if slack else -force
 
@@ -73,7 +74,7 @@ def _actuator(mujoco: Any, model: Any, name: str) -> int:
     kind = mujoco.mjtObj.mjOBJ_ACTUATOR
     k = int(mujoco.mj_name2id(model, kind, name))
     if k < 0:
-        names = [str(mujoco.mj_id2name(model, kind, one)) for one in range(model.nu)]
+        names = [str(mujoco.mj_id2name(model, kind, one)) for one in range(len(model.actuator_gaintype))]
         raise SpecError("in_mujoco.charts", name, f"is no actuator of the model, which has {', '.join(names)}",
                         near(name, names))  # fmt: skip
     return k
