@@ -26,10 +26,15 @@ _TEMPLATE = """<mujoco model={name}>
   -->
   <option timestep="0.001" integrator="implicitfast" gravity="0 0 -{gravity!r}"/>
   <visual>
+    <global azimuth="90" elevation="-10"/>
     <headlight ambient="0.5 0.5 0.5"/>
+    <rgba haze="1 1 1 1"/>
   </visual>
+  <asset>
+    <texture type="skybox" builtin="flat" rgb1="1 1 1" width="8" height="48"/>
+  </asset>
   <worldbody>
-    <geom name="ceiling" type="box" pos="0 0 {above!r}" size="{wide!r} {wide!r} 0.005" contype="0" conaffinity="0"
+    <geom name="ceiling" type="box" pos="0 0 {above!r}" size="{wide!r} {wide!r} {radius!r}" contype="0" conaffinity="0"
           rgba="0.5 0.5 0.5 1"/>
     <site name="top" pos="0 0 {top!r}" size="0.004"/>
     <body name="load" pos="0 0 {bottom!r}">
@@ -78,11 +83,12 @@ def as_mjcf(chart: Chart, name: str, mass: float | None) -> str:
     stiffness = law.stiffness(middle)
     resting = min(max(law.length(m * GRAVITY, middle), low), high) if stiffness > 0.0 else high
     top = 2.0 * high
+    radius = float(chart.largest_radius(resting, middle))
     half = 0.5 * (m / STEEL) ** (1.0 / 3.0)
     numbers = {
-        "gravity": GRAVITY, "top": top, "above": top + 0.005, "wide": max(0.05, half), "bottom": top - resting,
+        "gravity": GRAVITY, "top": top, "above": top + radius, "wide": 2.0 * radius, "bottom": top - resting,
         "half": half, "mass": m, "damping": 2.0 * DAMPED * math.sqrt(max(stiffness, 0.0) * m), "longest": high,
-        "radius": float(chart.largest_radius(resting, middle)), "lag": LAG, "gain": -law.gain,
+        "radius": radius, "lag": LAG, "gain": -law.gain,
         "gain_slope": -law.gain_slope, "bias": -law.bias, "slope": -law.slope, "first": first, "last": last,
         "largest": law.largest, "middle": middle,
     }  # fmt: skip
