@@ -3,6 +3,8 @@
 import json
 import re
 import runpy
+import shutil
+import sys
 import warnings
 from pathlib import Path
 
@@ -215,6 +217,34 @@ def test_size_a_valve(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: p
     times = [row[2] for row in (whole, half, fifth)]
     assert times[0] < times[1] < times[2]
     assert whole[3] == pytest.approx(92.41, abs=0.03)
+
+
+@pytest.mark.skipif(shutil.which("cc") is None, reason="there is no C compiler")
+def test_export_fmu(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]) -> None:
+    start, after, end, resting, lifted, air = printed("export_fmu.py", tmp_path, monkeypatch, capsys)
+    assert start == pytest.approx([0.1, 112.00, 0.2], abs=0.011)
+    assert after == pytest.approx([0.2, 92.93, 0.609], abs=0.02)
+    assert end == pytest.approx([1.5, 86.40, 2.0], abs=0.011)
+    assert (resting, lifted) == (start[1:2], [pytest.approx(end[1], abs=0.011)])
+    assert air == [pytest.approx(0.105, abs=1.1e-3)]
+
+
+def test_export_mujoco(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]) -> None:
+    affine, itself, by_map, turns, expected = printed("export_mujoco.py", tmp_path, monkeypatch, capsys)
+    assert affine == pytest.approx([86.99, 1.0], abs=0.02)
+    assert (itself, by_map) == ([pytest.approx(90.449, abs=2e-3)], [pytest.approx(itself[0], abs=1.1e-3)])
+    assert (turns, expected) == ([pytest.approx(5.62, abs=0.011)], [pytest.approx(turns[0], abs=0.011)])
+
+
+@pytest.mark.parametrize(("script", "missing"), [("export_fmu.py", "fmpy"), ("export_mujoco.py", "mujoco")])
+def test_examples_say_what_is_missing(
+    script: str, missing: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    monkeypatch.setitem(sys.modules, missing, None)
+    with pytest.raises(SystemExit) as ended:
+        printed(script, tmp_path, monkeypatch, capsys)
+    assert not ended.value.code
+    assert capsys.readouterr().out.startswith("skipped: ")
 
 
 def made_up() -> mk.Muscle:

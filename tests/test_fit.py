@@ -365,3 +365,69 @@ def test_directions_of_many_numbers() -> None:
     """Of twenty equal parts none is large, and all belong."""
     assert members(np.full(20, 20**-0.5)).all()
     assert members(np.array([0.9, 0.4, 0.17])).tolist() == [True, True, False]
+
+
+LONG = MUSCLE.replace("braid.length", "120 mm")
+"""Another length of the same make."""
+
+
+@pytest.fixture(scope="module")
+def two() -> tuple[list[mk.Muscle], list[mk.Data]]:
+    """Two lengths of one make on fittings that give way: a short one loses more force by them."""
+    made = [muscle.replace("fittings", mk.Fittings(compliance="0.02 mm/N")) for muscle in (MUSCLE, LONG)]
+    data = []
+    for muscle in made:
+        held = mk.Isobaric(contraction="-0.3 to 0", pressure=1e5, points=8)
+        curve = mk.run(muscle, held)
+        table = {"length [m]": curve.length, "pressure [Pa]": curve.pressure, "force [N]": curve.force}
+        data.append(mk.read_data(table, tests="pressure"))
+    return made, data
+
+
+BOTH = {"fittings.compliance": "0.001 mm/N to 0.1 mm/N", "braid.angle": FREE["braid.angle"]}
+
+
+def test_several_muscles_share_what_is_free(two: tuple[list[mk.Muscle], list[mk.Data]]) -> None:
+    made, data = two
+    begin = [one.replace("fittings.compliance", "0.005 mm/N").replace("braid.angle", "36 deg") for one in made]
+    found = mk.fit(begin, data, BOTH, starts=1)
+    assert_allclose([found.values[name] for name in BOTH], [2e-5, np.radians(37.0)], rtol=1e-6)
+    assert len(found.muscles) == 2
+    assert [float(one.braid.length) for one in found.muscles] == [0.085, 0.12]
+    assert list(found.data["of"].values) == [0] * 8 + [1] * 8
+    assert_allclose(found.forces(data), np.concatenate([one.force for one in data]), atol=1e-4)
+    assert set(found.data["test"].values.tolist()) == {"muscle 1: 1 bar", "muscle 2: 1 bar"}
+    # the second alone predicts its own test, and holds its own points
+    second = found.one(1)
+    assert (len(second.residuals), second.further) == (8, ())
+    held = mk.Isobaric(contraction="-0.3 to 0", pressure=1e5, points=8)
+    assert_allclose(second.predict(held).curve.force, data[1].force, atol=1e-4)
+    assert_allclose(second.rest_lengths, 0.12)
+
+
+def test_a_length_that_was_not_fitted_judges_a_model(two: tuple[list[mk.Muscle], list[mk.Data]]) -> None:
+    """Rigid fittings fit one length and miss the other; three lengths, each left out in turn."""
+    made, data = two
+    models = {
+        "give way": (made, {"fittings.compliance": BOTH["fittings.compliance"]}),
+        "rigid": ([one.replace("fittings", None) for one in made], {"chamber.law.c1": "0.5 kPa to 40 kPa"}),
+    }
+    found = mk.compare_models(models, data, starts=1)
+    assert found.best == "give way"
+    assert found.errors["give way"] < 1e-3
+    assert found.errors["rigid"] > 1.0
+
+
+@pytest.mark.parametrize(
+    ("muscles", "message"),
+    [
+        ([MUSCLE], "are 1 for 2 sets of data"),
+        ([MUSCLE, LONG, LONG], "are 3 for 2 sets of data"),
+        ([], "must be a muscle, or one for each of the data"),
+        ([MUSCLE, LONG.replace("friction", mk.Friction(coefficient=0.3, arm="0.1 mm"))], "friction"),
+        ([MUSCLE, LONG.replace("chamber", None)], "free.chamber.law.c1: is no number of this muscle"),
+    ],
+)
+def test_muscles_that_do_not_go_together(muscles: Any, message: str, exact: mk.Data) -> None:
+    with pytest.raises(mk.SpecError, match=message):
+        mk.fit(muscles, [exact, exact], FREE)

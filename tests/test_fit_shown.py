@@ -12,6 +12,7 @@ from typer.testing import CliRunner
 import mckibben as mk
 from mckibben.app.cli import app
 from mckibben.fitting.fitfile import read_fit
+from mckibben.spec.text import to_toml
 
 pytestmark = pytest.mark.app
 
@@ -230,6 +231,48 @@ def test_what_is_wrong_in_a_fit_file_is_named(file: Path, override: str, said: s
     with pytest.raises(mk.SpecError, match=said) as told:
         read_fit(file, [override])
     assert "\n" not in str(told.value)
+
+
+SEVERAL = (
+    FILE.replace("[data]", "[[data]]")
+    + """
+[[data]]
+file = "bench.csv"
+only = "1 bar"
+set."braid.fibres" = 60
+"""
+)
+
+
+def test_a_fit_file_of_several_muscles(file: Path) -> None:
+    file.write_text(SEVERAL, encoding="utf-8")
+    asked = read_fit(file)
+    assert [int(one.braid.fibres) for one in asked.muscle] == [56, 60]
+    assert [len(one) for one in asked.data] == [12, 8]
+    file.write_text(SEVERAL.replace("fibres", "fibers"), encoding="utf-8")
+    with pytest.raises(mk.SpecError, match="fibers"):
+        read_fit(file)
+    file.write_text(SEVERAL.replace('only = "1 bar"', 'only = "2 bar"'), encoding="utf-8")
+    with pytest.raises(mk.SpecError, match=r"data\[1\].only = .*: is no test of these data"):
+        read_fit(file)
+
+
+def test_a_fit_of_several_muscles_is_kept_and_drawn(fit: mk.Fit, tmp_path: Path) -> None:
+    """Made from a fit of one, so that nothing is solved again."""
+    other = fit.muscle.replace("braid.length", "120 mm")
+    of = np.repeat([0, 1], len(fit.residuals) // 2)
+    data = fit.data.assign({"further": ("further_muscle", [to_toml(other)]), "of": ("point", of)})
+    both = mk.Fit(fit.muscle, fit.given, data, (other,))
+    mk.save(both, tmp_path / "both.nc")
+    again = mk.load(tmp_path / "both.nc")
+    assert again == both
+    assert again.muscles == (fit.muscle, other)
+    assert "2 muscles" in repr(again)
+    np.testing.assert_allclose(again.rest_lengths, np.where(of, 0.12, 0.085))
+    assert "2 muscles, 16 points" in mk.plot(again).get_suptitle()
+    mk.save(both, tmp_path / "both.csv")
+    texts = [one.read_text(encoding="utf-8") for one in tmp_path.glob("both.*") if one.suffix != ".nc"]
+    assert any("the fitted muscle, number 2 (TOML):" in text for text in texts)
 
 
 @pytest.mark.parametrize(

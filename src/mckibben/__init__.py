@@ -41,6 +41,7 @@ _PUBLIC = {
     "mckibben.fitting.choice": ("compare_models",),
     "mckibben.charts.chart": ("chart",),
     "mckibben.exports.export": ("export",),
+    "mckibben.exports.mujoco": ("in_mujoco",),
     "mckibben.potential.chart": ("Chart",),
     "mckibben.designing.design": ("design",),
     "mckibben.designing.answer": ("Design",),

@@ -16,6 +16,7 @@ __all__ = ["EPILOG", "export"]
 EPILOG = examples(
     "mckibben export chart.nc -o muscle.h",
     "mckibben export chart.nc -o muscle.mat --points 101,61",
+    'mckibben export chart.nc -o lift.fmu --mass "2 kg"',
     'mckibben export case.toml --length "60 mm to 115 mm" --pressure "0 to 3 bar" -o muscle.py',
 )
 
@@ -26,25 +27,36 @@ def export(
         Path, typer.Argument(metavar="CASE.toml|CHART.nc", help="a muscle, or what mckibben chart saved of one")
     ],
     output: Annotated[
-        Path, typer.Option("--output", "-o", metavar="FILE", help="C (.h), Python (.py), or tables: .csv, .mat, .json")
+        Path,
+        typer.Option(
+            "--output",
+            "-o",
+            metavar="FILE",
+            help="C (.h), Python (.py), FMI (.fmu), MuJoCo (.xml, .c), or tables: .csv, .mat, .json",
+        ),
     ],
     length: Annotated[str | None, typer.Option(metavar="LENGTHS", help='of a muscle: "60 mm to 115 mm"')] = None,
     pressure: Annotated[str | None, typer.Option(metavar="PRESSURES", help='of a muscle: "0 to 3 bar"')] = None,
     tolerance: MapTolerance = 1e-4,
     overrides: Overrides = None,
     points: Annotated[str, typer.Option(help="lengths and pressures of a table")] = "56,31",
-    name: Annotated[str, typer.Option(help="what the functions in C begin with")] = "muscle",
+    name: Annotated[str, typer.Option(help="what the functions in C begin with; of an FMU, of an actuator")] = "muscle",
+    mass: Annotated[
+        str | None,
+        typer.Option(metavar="MASS", help='.fmu, .xml: hangs on the muscle, such as "2 kg"; an FMU has a valve then'),
+    ] = None,
     force: Force = False,
     quiet: Quiet = False,
 ) -> int:
     """Write a map of a muscle for another program; the ending of FILE says which.
 
     C and Python are the map itself, with its slopes, and go on smoothly outside of its range. Tables are over even
-    lengths and pressures, in SI units.
+    lengths and pressures, in SI units. An FMU is compiled from C, which it holds as well, and needs no Python. A model
+    for MuJoCo (.xml) has an affine actuator; its largest error is printed, and stands in the file. A plugin (.c) is the
+    map itself, for MuJoCo alone.
 
     The exit code is 3 if the error of a map that is made here is above the tolerance.
     """
-    from mckibben import disk
     from mckibben.files import store
     from mckibben.spec.errors import SpecError
 
@@ -54,11 +66,11 @@ def export(
     parts = points.split(",")
     if len(parts) != 2 or not all(part.strip().isdecimal() for part in parts):
         raise SpecError("--points", points, "must be two whole numbers", "such as 56,31")
-    from mckibben.exports.export import FORMATS
+    size = int(parts[0]), int(parts[1])
     from mckibben.exports.export import export as exporting
+    from mckibben.exports.export import how
 
-    store.suffix_of(output, FORMATS)
-    disk.check_target(output, force)
+    how(output, size, name, mass, force)
     from mckibben.app import charted
 
     if made_here:
@@ -70,8 +82,14 @@ def export(
         if not isinstance(loaded, Chart):
             raise SpecError(str(file), allowed="holds no map", advice="give what mckibben chart saved")
         found = loaded
-    exporting(found, output, points=(int(parts[0]), int(parts[1])), name=name, force=force)
+    exporting(found, output, points=size, name=name, mass=mass, force=force)
     if not quiet:
         charted.show(found)
+        if output.suffix.lower() == ".xml":
+            from mckibben.exports.affine import affine
+
+            law = affine(found)
+            share = f"{100.0 * law.error / law.largest:.2g} % of the largest"
+            say(f"- the affine actuator is off the map by up to {law.error:.2g} N, {share}")
         say(f"saved to {output}")
     return COMPLETE if found.converged or not made_here else INCOMPLETE

@@ -79,6 +79,7 @@ def as_json(fit: Fitted, seconds: float, tried: int, files: dict[str, str | None
         "points": len(fit.residuals), "rms": fit.rms, "of_force": finite(fit.percent), "largest": fit.largest,
         "explained": finite(fit.explained), "tests": _tests(fit), "notes": list(fit.notes),
         "force_error": float(data.attrs["force_error"]), "muscle": to_mapping(fit.muscle, allow_custom=True),
+        "further": [to_mapping(one, allow_custom=True) for one in fit.further],
         "source": str(data.attrs["source"]), "tried": tried, "seconds": seconds,
         "mckibben_version": str(data.attrs["mckibben_version"]),
     }  # fmt: skip
@@ -103,6 +104,7 @@ def muscle_text(fit: Fitted) -> str:
     """The fitted muscle as the [muscle] table of a case file, with what it comes from in comments."""
     about = fit.data.attrs
     lines = [f"fitted to {about['source']} by mckibben {about['mckibben_version']}: {_goodness(fit)}"]
+    lines += [f"the first of {len(fit.muscles)} muscles that were fitted together"] if fit.further else []
     lines += [f"{name}: {row['value']}" + (f" +- {row['error']}" if row["error"] else "")
               for name, row in fit.table.iterrows()]  # fmt: skip
     return case_of(fit.muscle, lines)

@@ -57,4 +57,4 @@ def load(path: str | PathLike[str]) -> Result | Fit | Design | Chart | Motion | 
         return Design(found.muscle, found.given, found.data)
     from mckibben.fitting.answer import Fit  # here, because a result takes no solver
 
-    return Fit(found.muscle, found.given, found.data)
+    return Fit(found.muscle, found.given, found.data, found.further)

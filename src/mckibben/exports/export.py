@@ -5,33 +5,71 @@ from __future__ import annotations
 from collections.abc import Callable
 from os import PathLike
 from pathlib import Path
-from typing import Any
+from typing import Any, NamedTuple
 
 from mckibben import disk
 from mckibben.charts.chart import chart
+from mckibben.exports.compiler import compiler
+from mckibben.exports.fmu import as_fmu
 from mckibben.exports.lookup import as_json, as_mat
+from mckibben.exports.mjcf import as_mjcf
+from mckibben.exports.mjplugin import as_plugin
 from mckibben.files.store import suffix_of
+from mckibben.potential.c_source import check_name
 from mckibben.potential.chart import Chart
 from mckibben.potential.grid import LENGTHS, PRESSURES, table
 from mckibben.spec import Muscle, SpecError
+from mckibben.spec.declared import Declared
+from mckibben.spec.fields import read_quantity
 
-__all__ = ["FORMATS", "export"]
+__all__ = ["FORMATS", "How", "export", "how"]
 
 FORMATS = {
     ".h": "C99: the map itself", ".py": "Python with NumPy alone: the map itself", ".csv": "a table",
-    ".mat": "tables for MATLAB and Simulink", ".json": "tables",
+    ".mat": "tables for MATLAB and Simulink", ".json": "tables", ".fmu": "FMI 2.0, for co-simulation: the map itself",
+    ".xml": "MuJoCo: an affine actuator", ".c": "MuJoCo: a plugin with the map itself",
 }  # fmt: skip
 """Endings and what they stand for."""
 MOST = 2000
 """Lengths, or pressures, of a table at most."""
+MOVING = (".fmu", ".xml")
+"""Formats in which a mass can hang on the muscle."""
 
-_WRITERS: dict[str, Callable[[Chart, int, int, str], bytes]] = {
-    ".h": lambda made, lengths, pressures, name: made.to_c(name).encode("utf-8"),
-    ".py": lambda made, lengths, pressures, name: made.to_numpy().encode("utf-8"),
-    ".csv": lambda made, lengths, pressures, name: table(made, lengths, pressures).encode("utf-8"),
-    ".mat": lambda made, lengths, pressures, name: as_mat(made, lengths, pressures),
-    ".json": lambda made, lengths, pressures, name: as_json(made, lengths, pressures).encode("utf-8"),
+
+class How(NamedTuple):
+    """What is asked for beside the map."""
+
+    points: tuple[int, int]  #: lengths and pressures of a table
+    name: str
+    mass: float | None  #: kg
+
+
+_WRITERS: dict[str, Callable[[Chart, How], bytes | str]] = {
+    ".h": lambda made, how: made.to_c(how.name),
+    ".py": lambda made, how: made.to_numpy(),
+    ".csv": lambda made, how: table(made, *how.points),
+    ".mat": lambda made, how: as_mat(made, *how.points),
+    ".json": lambda made, how: as_json(made, *how.points),
+    ".fmu": lambda made, how: as_fmu(made, how.name, how.mass),
+    ".xml": lambda made, how: as_mjcf(made, how.name, how.mass),
+    ".c": lambda made, how: as_plugin(made, how.name),
 }
+
+
+def how(path: str | PathLike[str], points: tuple[int, int], name: str, mass: Any, force: bool) -> How:
+    """What is asked for, checked before long work. SpecError for what `export` refuses whatever the map."""
+    suffix = suffix_of(path, FORMATS)
+    disk.check_target(path, force)
+    if not (len(points) == 2 and all(isinstance(n, int) and 2 <= n <= MOST for n in points)):
+        raise SpecError("export.points", points, f"must be two whole numbers from 2 to {MOST}", "lengths and pressures")
+    check_name(name, "export.name")
+    if mass is not None and suffix not in MOVING:
+        raise SpecError("export.mass", mass, f"is for {' and '.join(MOVING)}", f"leave it out for {suffix}")
+    if suffix == ".fmu":
+        compiler()
+    declared = Declared(kind="quantity", meaning="mass on the muscle", read=read_quantity, unit="kg", low=0.0,
+                        low_open=True, high=1e6)  # fmt: skip
+    return How(points, name, None if mass is None else float(read_quantity(mass, "export.mass", declared)))
 
 
 def export(
@@ -43,6 +81,7 @@ def export(
     tolerance: float = 1e-4,
     points: tuple[int, int] = (LENGTHS, PRESSURES),
     name: str = "muscle",
+    mass: Any = None,
     force: bool = False,
     watch: Callable[[int, int], None] | None = None,
 ) -> Path:
@@ -52,6 +91,13 @@ def export(
     `.mat` (MATLAB, with breakpoints as Simulink's look-up tables take them), `.json` and `.csv` are tables over even
     lengths and pressures in SI units, with what must be known of them.
 
+    `.fmu` is for co-simulation by FMI 2.0, in C, compiled here, its source inside: pressure and length in; force,
+    volume, their slopes and the largest radius out. With a mass it moves: the command of a valve (ISO 6358) and a push
+    in; length, speed, pressure and the state of the air out; conductances, supply and so on are its parameters.
+    `.xml` is a model for MuJoCo: a mass that hangs on the muscle, a tendon with an affine actuator whose activation is
+    the pressure. How far its force is off the map stands in the file. The map itself is what `in_mujoco` gives it, in
+    Python, or `.c`, an engine plugin whose head says how it is compiled and put into a model.
+
     Args:
         muscle: a map that `chart` gave, or a muscle, of which one is made.
         path: the file.
@@ -59,7 +105,9 @@ def export(
         pressure: for a muscle: the gauge pressures [Pa].
         tolerance: for a muscle: largest error of the force over the largest force.
         points: lengths and pressures of a table.
-        name: what the functions in C begin with.
+        name: what the functions in C begin with; the name of an FMU and of MuJoCo's tendon and actuator.
+        mass: mass [kg] on the muscle, for `.fmu` (with a valve then) and `.xml` (a fifth of the largest force by
+            default).
         force: replace a file that is there already.
         watch: called with (pressures done, pressures in all) as a map is made.
 
@@ -67,16 +115,14 @@ def export(
         The path of the file.
 
     Raises:
-        SpecError: for another ending, a file that exists (without `force`), and whatever `chart` refuses.
+        SpecError: for another ending, a file that exists (without `force`), an FMU where there is no C compiler, and
+            whatever `chart` refuses.
 
     >>> chart = mk.chart(mk.presets.paper(), length="60 mm to 115 mm", pressure="0 to 3 bar")
     >>> mk.export(chart, "muscle.h").name
     'muscle.h'
     """
-    suffix = suffix_of(path, FORMATS)
-    disk.check_target(path, force)
-    if not (len(points) == 2 and all(isinstance(n, int) and 2 <= n <= MOST for n in points)):
-        raise SpecError("export.points", points, f"must be two whole numbers from 2 to {MOST}", "lengths and pressures")
+    asked = how(path, points, name, mass, force)
     if isinstance(muscle, Chart):
         if length is not None or pressure is not None:
             raise SpecError("export", allowed="a map has its range", advice="leave out length and pressure")
@@ -87,4 +133,5 @@ def export(
             example = '"60 mm to 115 mm"' if length is None else '"0 to 3 bar"'
             raise SpecError(f"export.{missing}", allowed="is missing", advice=f"give a range, such as {example}")
         made = chart(muscle, length=length, pressure=pressure, tolerance=tolerance, watch=watch)
-    return disk.write(path, _WRITERS[suffix](made, *points, name), force)
+    content = _WRITERS[suffix_of(path, FORMATS)](made, asked)
+    return disk.write(path, content.encode("utf-8") if isinstance(content, str) else content, force)

@@ -9,11 +9,14 @@ from os import PathLike
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+import numpy as np
+
 from mckibben.files.hdf5 import opened
 from mckibben.files.stored import checked, muscle_in
 from mckibben.files.stored import write as written
 from mckibben.files.table import write
 from mckibben.results.fit import NUMBERS, POINTS, Fitted
+from mckibben.spec.errors import SpecError
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -47,7 +50,11 @@ def load(path: str | PathLike[str]) -> Fitted:
 def of(stored: xr.Dataset, name: str) -> Fitted:
     """The fit that a file of this name holds; SpecError where it holds something else."""
     data = checked(stored, name, "fit", _NEEDED, _ABOUT, ("number", "other"))
-    return Fitted(muscle_in(name, data.attrs["muscle"]), muscle_in(name, data.attrs["given"]), data)
+    texts = data["further"].values.tolist() if "further" in data else []
+    further = tuple(muscle_in(name, text) for text in texts)
+    if further and not ("of" in data and set(np.unique(data["of"].values)) <= set(range(len(further) + 1))):
+        raise SpecError(name, allowed="does not say which muscle each point is of", advice="make it again")
+    return Fitted(muscle_in(name, data.attrs["muscle"]), muscle_in(name, data.attrs["given"]), data, further)
 
 
 def save_csv(fit: Fitted, path: str | PathLike[str], force: bool = False) -> Path:
@@ -73,5 +80,6 @@ def _notes(fit: Fitted) -> Iterator[str]:
     yield ""
     yield from (f"note: {line}" for line in fit.notes)
     yield ""
-    yield "the fitted muscle (TOML):"
-    yield from about["muscle"].splitlines()
+    for k, text in enumerate([about["muscle"], *(fit.data["further"].values.tolist() if fit.further else [])]):
+        yield f"the fitted muscle{f', number {k + 1}' if fit.further else ''} (TOML):"
+        yield from text.splitlines()

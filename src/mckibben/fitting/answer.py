@@ -13,11 +13,12 @@ from mckibben.experiments.run import run
 from mckibben.fitting.free import Free, put_in
 from mckibben.fitting.misfit import Misfit, Points
 from mckibben.fitting.search import Least
+from mckibben.fitting.together import AnyMisfit, misfit_of
 from mckibben.fitting.uncertain import Spread
 from mckibben.measure.report import versions
 from mckibben.results.fit import NUMBERS, POINTS, Fitted
 from mckibben.results.result import Result
-from mckibben.spec import Test
+from mckibben.spec import Muscle, SpecError, Test
 from mckibben.spec.text import to_toml
 
 __all__ = ["Fit", "Prediction", "answer"]
@@ -49,6 +50,7 @@ class Fit(Fitted):
         muscle: the muscle with the best values.
         given: the muscle from which the fit began.
         data: xarray Dataset of the numbers and the points, in SI.
+        further: where several muscles were fitted together, the others; `muscles` are all of them.
 
     >>> muscle = mk.presets.paper()
     >>> curve = mk.run(muscle, mk.Isobaric(length="85 mm to 110 mm", pressure="1 bar", points=6))
@@ -96,6 +98,8 @@ class Fit(Fitted):
     def forces(self, data: Data | Sequence[Data]) -> np.ndarray:
         """Forces [N] of the fitted muscle at measured points, as the instruments would show them; NaN beyond its reach.
 
+        Of several muscles each takes its own of as many data.
+
         >>> muscle = mk.presets.paper()
         >>> curve = mk.run(muscle, mk.Isobaric(length="85 mm to 110 mm", pressure="1 bar", points=6))
         >>> table = {"length [m]": curve.length, "pressure [Pa]": curve.pressure, "force [N]": curve.force}
@@ -105,8 +109,50 @@ class Fit(Fitted):
         True
         """
         several = (data,) if isinstance(data, Data) else tuple(data)
-        misfit = Misfit(self.muscle, self.free, Points.of(self.muscle, several, {}), int(self.data.attrs["unknowns"]))
+        if len(self.muscles) > 1 and len(several) != len(self.muscles):
+            said = f"are {len(several)} for {len(self.muscles)} muscles"
+            raise SpecError(
+                "data", allowed=said, advice="give those of each muscle, or ask one: fit.one(0).forces(data)"
+            )
+        groups = [several] if len(self.muscles) == 1 else [(one,) for one in several]
+        points = [Points.of(muscle, group, {}) for muscle, group in zip(self.muscles, groups, strict=True)]
+        misfit = misfit_of(self.muscles, self.free, points, int(self.data.attrs["unknowns"]))
         return misfit(misfit.start).force
+
+    def one(self, k: int) -> Fit:
+        """Of several muscles number k, counted from 0, with the same numbers: to predict its tests.
+
+        >>> short = mk.presets.paper()
+        >>> long = short.replace("braid.length", "120 mm")
+        >>> held = mk.Isobaric(contraction="-0.2 to 0.05", pressure="1 bar", points=5)
+        >>> curves = [mk.run(muscle, held) for muscle in (short, long)]
+        >>> tables = [{"length [m]": c.length, "pressure [Pa]": c.pressure, "force [N]": c.force} for c in curves]
+        >>> data = [mk.read_data(table) for table in tables]
+        >>> found = mk.fit([short, long], data, {"braid.angle": "35 deg to 39 deg"}, starts=1)
+        >>> float(found.one(1).muscle.braid.length)  # m
+        0.12
+        """
+        if not 0 <= k < len(self.muscles):
+            raise SpecError("k", k, f"must be a whole number from 0 to {len(self.muscles) - 1}")
+        if not self.further:
+            return self
+        data = self.data.isel(point=np.flatnonzero(self.data["of"].values == k)).drop_vars(["further", "of"])
+        data.attrs = self.data.attrs | {"muscle": to_toml(self.muscles[k], allow_custom=True)}
+        return attrs.evolve(self, muscle=self.muscles[k], data=data, further=())
+
+    def applied_to(self, muscle: Muscle) -> Muscle:
+        """Another muscle with the fitted numbers: a length that was not measured, say.
+
+        >>> muscle = mk.presets.paper()
+        >>> curve = mk.run(muscle, mk.Isobaric(length="85 mm to 110 mm", pressure="1 bar", points=6))
+        >>> table = {"length [m]": curve.length, "pressure [Pa]": curve.pressure, "force [N]": curve.force}
+        >>> angle = {"braid.angle": "35 deg to 39 deg"}
+        >>> found = mk.fit(muscle.replace("braid.angle", "36 deg"), mk.read_data(table), angle, starts=1)
+        >>> longer = found.applied_to(muscle.replace("braid.length", "120 mm"))
+        >>> print(f"{float(longer.braid.length):.2f} m, {np.degrees(float(longer.braid.angle)):.2f} deg")
+        0.12 m, 37.00 deg
+        """
+        return put_in(muscle, self.free, np.array(list(self.values.values())))
 
     @property
     def free(self) -> tuple[Free, ...]:
@@ -116,7 +162,7 @@ class Fit(Fitted):
 
 
 def answer(
-    misfit: Misfit, best: Least, spread: Spread, ends: tuple[np.ndarray, np.ndarray], about: dict[str, Any]
+    misfit: AnyMisfit, best: Least, spread: Spread, ends: tuple[np.ndarray, np.ndarray], about: dict[str, Any]
 ) -> Fit:
     """The answer from where a search ended, with the ends of the intervals in x."""
     import xarray as xr
@@ -149,12 +195,18 @@ def answer(
         "meaning": ("number", [one.meaning for one in free]),
         "test": ("point", measured.tests), "branch": ("point", measured.branches),
     }  # fmt: skip
-    muscle = put_in(misfit.muscle, free, values)
+    given, *_ = misfit.muscles
+    muscle, *further = (put_in(one, free, values) for one in misfit.muscles)
+    if further:
+        variables |= {
+            "further": ("further_muscle", [to_toml(one, allow_custom=True) for one in further]),
+            "of": ("point", misfit.of, {"long_name": "which muscle, 0 the first"}),
+        }  # fmt: skip
     attributes = about | {
-        "muscle": to_toml(muscle, allow_custom=True), "given": to_toml(misfit.muscle, allow_custom=True),
+        "muscle": to_toml(muscle, allow_custom=True), "given": to_toml(given, allow_custom=True),
         "mckibben_version": versions()["mckibben"],
     }  # fmt: skip
     dataset = xr.Dataset(variables, {"number": names, "other": names}, attributes)
     for name in dataset.variables:
         dataset[name].values.flags.writeable = False
-    return Fit(muscle, misfit.muscle, dataset)
+    return Fit(muscle, given, dataset, tuple(further))

@@ -11,6 +11,7 @@ import numpy as np
 from mckibben.data.values import Data
 from mckibben.fitting.answer import Fit
 from mckibben.fitting.fit import fit
+from mckibben.fitting.misfit import Misfit, Points
 from mckibben.spec import Muscle, SpecError
 
 __all__ = ["Choice", "compare_models"]
@@ -67,7 +68,9 @@ class Choice:
 
 
 def compare_models(
-    models: Mapping[str, tuple[Muscle, Mapping[str, Any]]], data: Data | Sequence[Data], **options: Any
+    models: Mapping[str, tuple[Muscle | Sequence[Muscle], Mapping[str, Any]]],
+    data: Data | Sequence[Data],
+    **options: Any,
 ) -> Choice:
     """Fit several muscles to the same data, and judge each by points that its fit did not see.
 
@@ -76,7 +79,7 @@ def compare_models(
     effects are in the data.
 
     Args:
-        models: by a name of your own, the muscle and what is free, as for `fit`.
+        models: by a name of your own, the muscle (or one for each of the data) and what is free, as for `fit`.
         data: as for `fit`.
         options: further arguments of `fit` for all of them.
 
@@ -104,27 +107,39 @@ def compare_models(
     for name, (muscle, free) in models.items():
         misses, forces = [], []
         for parts, rest in _folds(several, tests):
-            left = {name for one in rest for name in one.tests}
+            left = {name for one in rest.values() for name in one.tests}
             weights = {name: weight for name, weight in (options.get("weights") or {}).items() if name in left}
-            found = fit(muscle, rest, free, **options | {"weights": weights})
-            force = np.concatenate([one.force for one in parts])
-            misses.append(found.forces(parts) - force)
-            forces.append(force)
+            known = muscle if isinstance(muscle, Muscle) else [muscle[k] for k in rest]
+            found = fit(known, list(rest.values()), free, **options | {"weights": weights})
+            for k, one in parts.items():
+                misses.append(_forces(found, muscle if isinstance(muscle, Muscle) else muscle[k], one) - one.force)
+                forces.append(one.force)
         left_out[name] = np.concatenate(misses)
     return Choice(fits, left_out, np.concatenate(forces))
 
 
-def _folds(several: tuple[Data, ...], tests: list[str]) -> list[tuple[list[Data], list[Data]]]:
-    """(left out, kept) of every fold."""
+def _forces(found: Fit, muscle: Muscle, data: Data) -> np.ndarray:
+    """Forces [N] at points of a muscle with the fitted numbers, which need not be one that was fitted."""
+    misfit = Misfit(muscle, found.free, Points.of(muscle, (data,), {}), int(found.data.attrs["unknowns"]))
+    return misfit(misfit.start).force
+
+
+def _folds(several: tuple[Data, ...], tests: list[str]) -> list[tuple[dict[int, Data], dict[int, Data]]]:
+    """(left out, kept) of every fold, each by its place among the data."""
     folds = []
     for k in range(len(tests) if len(tests) >= 3 else FOLDS):
-        out, kept = [], []
-        for one in several:
+        out: dict[int, Data] = {}
+        kept: dict[int, Data] = {}
+        for place, one in enumerate(several):
             if len(tests) >= 3:
                 chosen = np.array([one.tests[which] == tests[k] for which in one.which])
             else:
                 chosen = np.arange(len(one)) % FOLDS == k
-            out.append(one.where(chosen))
-            kept.append(one.where(~chosen))
-        folds.append(([one for one in out if len(one)], [one for one in kept if len(one)]))
+            out[place], kept[place] = one.where(chosen), one.where(~chosen)
+        folds.append((_some(out), _some(kept)))
     return folds
+
+
+def _some(parts: dict[int, Data]) -> dict[int, Data]:
+    """Those with points."""
+    return {place: one for place, one in parts.items() if len(one)}

@@ -10,12 +10,12 @@ import numpy as np
 from mckibben.data.values import Data
 from mckibben.experiments.foresee import refuse_friction
 from mckibben.fitting.answer import Fit, answer
-from mckibben.fitting.free import Free, free_numbers, offsets_of
-from mckibben.fitting.misfit import Misfit, Points
+from mckibben.fitting.free import Free, free_numbers, is_turned, offsets_of
+from mckibben.fitting.misfit import Points
 from mckibben.fitting.notes import notes_on
 from mckibben.fitting.search import LOSSES, Least, candidates, cost_of, least
+from mckibben.fitting.together import AnyMisfit, misfit_of, told_apart
 from mckibben.fitting.uncertain import Spread, profile, spread_of
-from mckibben.measure.survey import errors
 from mckibben.spec import Muscle, SpecError
 from mckibben.spec.errors import nearest
 from mckibben.units import UnitError, show, to_si
@@ -31,7 +31,7 @@ SETTLED = 0.01
 
 
 def fit(
-    muscle: Muscle,
+    muscle: Muscle | Sequence[Muscle],
     data: Data | Sequence[Data],
     free: Mapping[str, Any],
     *,
@@ -52,7 +52,8 @@ def fit(
     `least_squares`, with exact derivatives. What the data cannot tell is said instead of a number.
 
     Args:
-        muscle: what is known; the numbers that are free start from its own where these are inside the bounds.
+        muscle: what is known; the numbers that are free start from its own where these are inside the bounds. Several,
+            one for each of the data, share what is free: one make in several lengths, say.
         data: what `read_data` gave, one or several. Forces are compared at the measured lengths and pressures.
         free: names of numbers of the muscle and their ranges, {"chamber.law.c1": "1 kPa to 1 MPa"}.
         priors: what is known of a free number beforehand, mean and standard deviation: {"braid.angle": "37 deg +- 1
@@ -69,7 +70,7 @@ def fit(
         watch: called with the number of muscles tried.
 
     Returns:
-        A `Fit`: `muscle`, `table`, `intervals`, `correlation`, `notes`, `predict(test)`.
+        A `Fit`: `muscle` (of several, `muscles`), `table`, `intervals`, `correlation`, `notes`, `predict(test)`.
 
     Raises:
         SpecError: for names, ranges or data that cannot be, and where no muscle within the bounds reaches every point.
@@ -81,24 +82,25 @@ def fit(
     >>> print(found.table.loc["braid.angle", "value"])
     37 deg
     """
-    refuse_friction(muscle, "fit")
     several = _several(data)
+    muscles = _muscles(muscle, several)
     known = _known(force_error)
     if loss not in LOSSES:
         raise SpecError("loss", loss, "must be one of " + ", ".join(LOSSES), nearest(str(loss), LOSSES))
     if not 0.5 <= level < 1.0:
         raise SpecError("level", level, "must be at least 0.5 and below 1", "0.95 is usual")
-    numbers = (*free_numbers(muscle, free, priors or {}), *offsets_of(offsets or {}))
+    numbers = (*_shared(muscles, free, priors or {}), *offsets_of(offsets or {}))
     _check_contractions(several, numbers)
-    measured = _measured(muscle, several, weights or {})
-    if len(measured.force) + sum(one.prior is not None for one in numbers) <= len(numbers):
-        said = f"has {len(measured.force)} points for {len(numbers)} free numbers"
+    measured = _measured(muscles, several, weights or {})
+    count = sum(len(points.force) for points in measured)
+    if count + sum(one.prior is not None for one in numbers) <= len(numbers):
+        said = f"has {count} points for {len(numbers)} free numbers"
         raise SpecError("data", allowed=said, advice="free fewer numbers, or measure more")
-    misfit = Misfit(muscle, numbers, measured, SIZES[0])
+    misfit = misfit_of(muscles, numbers, measured, SIZES[0])
     best, sigma = _best(misfit, known, loss, starts, tolerance, watch or (lambda count: None))
     spread = spread_of(best, known is not None)
     low, high = _intervals(misfit, best, spread, sigma, loss, level, profiles)
-    notes, error = notes_on(misfit, best, spread), _error(misfit, best.x)
+    notes, error = notes_on(misfit, best, spread), misfit.error(best.x)
     if error > tolerance:
         notes.append(f"the forces of the model are computed to {error:.1g} only, not to {tolerance:g}")
     about = {
@@ -106,7 +108,7 @@ def fit(
         "force_error": float(sigma * np.sqrt(spread.scale)), "message": best.message,
         "converged": int(best.converged), "evaluations": best.evaluations, "unknowns": misfit.size,
         "source": ", ".join(one.source for one in several), "error_estimate": error,
-        "notes": "\n".join([*notes, *(line for one in several for line in one.assumptions)]),
+        "notes": "\n".join(dict.fromkeys([*notes, *(line for one in several for line in one.assumptions)])),
     }  # fmt: skip
     return answer(misfit, best, spread, (low, high), about)
 
@@ -118,6 +120,27 @@ def _several(data: Data | Sequence[Data]) -> tuple[Data, ...]:
     if sum(len(one) for one in several) == 0:
         raise SpecError("data", allowed="holds no points")
     return several
+
+
+def _muscles(muscle: Muscle | Sequence[Muscle], several: tuple[Data, ...]) -> tuple[Muscle, ...]:
+    """One for all data, or one for each of them."""
+    muscles = (muscle,) if isinstance(muscle, Muscle) else tuple(muscle)
+    if not muscles or not all(isinstance(one, Muscle) for one in muscles):
+        raise SpecError("muscle", muscle, "must be a muscle, or one for each of the data")
+    if not isinstance(muscle, Muscle) and len(muscles) != len(several):
+        said = f"are {len(muscles)} for {len(several)} sets of data"
+        raise SpecError("muscle", allowed=said, advice="give one muscle for each of the data, in the same order")
+    for one in muscles:
+        refuse_friction(one, "fit")
+    return muscles
+
+
+def _shared(muscles: tuple[Muscle, ...], free: Mapping[str, Any], priors: Mapping[str, Any]) -> tuple[Free, ...]:
+    """What is free, which every muscle must have; it starts where the first one is."""
+    found = [free_numbers(muscle, free, priors) for muscle in muscles]
+    if any(is_turned(muscle, "braid.angle") != is_turned(muscles[0], "braid.angle") for muscle in muscles):
+        raise SpecError("muscle", allowed="measure the angle from different lines", advice="give all angles from one")
+    return found[0]
 
 
 def _check_contractions(several: tuple[Data, ...], numbers: tuple[Free, ...]) -> None:
@@ -140,20 +163,23 @@ def _known(force_error: Any) -> float | None:
     return size
 
 
-def _measured(muscle: Muscle, several: tuple[Data, ...], weights: Mapping[str, float]) -> Points:
-    """The points to fit, with their weights; a test of weight 0 is left out."""
-    tests = dict.fromkeys(name for data in several for name in data.tests)
+def _measured(
+    muscles: tuple[Muscle, ...], several: tuple[Data, ...], weights: Mapping[str, float]
+) -> list[Points]:  # fmt: skip
+    """The points to fit, with their weights, for each muscle; a test of weight 0 is left out."""
+    groups = [several] if len(muscles) == 1 else [(data,) for data in told_apart(muscles, several)]
+    tests = dict.fromkeys(name for group in groups for data in group for name in data.tests)
     for name, weight in weights.items():
         if name not in tests:
             raise SpecError(f"weights.{name}", allowed="is no test of these data", advice=nearest(str(name), tests))
         if not 0.0 <= float(weight) < 1e12:
             raise SpecError(f"weights.{name}", weight, "must be at least 0")
-    measured = Points.of(muscle, several, weights)
-    return measured.some(measured.weights > 0.0)
+    found = [Points.of(muscle, group, weights) for muscle, group in zip(muscles, groups, strict=True)]
+    return [points.some(points.weights > 0.0) for points in found]
 
 
 def _best(
-    misfit: Misfit, known: float | None, loss: str, starts: int, tolerance: float, watch: Callable[[int], None]
+    misfit: AnyMisfit, known: float | None, loss: str, starts: int, tolerance: float, watch: Callable[[int], None]
 ) -> tuple[Least, float]:
     """The end of the search, and the size of an error that it was done with [N]."""
     count = 0
@@ -173,17 +199,17 @@ def _best(
             if not needs_size or abs(size / sigma - 1.0) < SETTLED:
                 break
             sigma = size
-        if finer is None or _error(misfit, x) <= tolerance:
+        if finer is None or misfit.error(x) <= tolerance:
             break
         coarser = misfit.size
         misfit.place_anew(x, finer)
-        if misfit.near is None:  # lost on more unknowns: what was found stands, with the error that it has
+        if not misfit.reached:  # lost on more unknowns: what was found stands, with the error that it has
             misfit.place_anew(x, coarser)
             break
     return found, sigma
 
 
-def _start(misfit: Misfit, sigma: float, count: int, watch: Callable[[int], None]) -> np.ndarray:
+def _start(misfit: AnyMisfit, sigma: float, count: int, watch: Callable[[int], None]) -> np.ndarray:
     """The best of several points of the range. SpecError where none has a state at every measured point."""
     ranked: list[tuple[int, float, int, np.ndarray]] = []
     for x in candidates(misfit, count):
@@ -192,7 +218,7 @@ def _start(misfit: Misfit, sigma: float, count: int, watch: Callable[[int], None
         ranked.append((missing, cost, len(ranked), x))
     missing, _, _, x = min(ranked)
     misfit.place_anew(x)
-    if misfit.near is None:
+    if not misfit.reached:
         lost = np.flatnonzero(~misfit(x).found)
         lengths, pressures = misfit.measured.points[lost].T
         said = (
@@ -203,14 +229,7 @@ def _start(misfit: Misfit, sigma: float, count: int, watch: Callable[[int], None
     return x
 
 
-def _error(misfit: Misfit, x: np.ndarray) -> float:
-    """Estimated relative error of the forces at x."""
-    misfit(x)
-    problem, near = misfit.problem_at(x), misfit.near
-    return 0.0 if near is None else float(errors(problem, near.u, near.loads).max())
-
-
-def _size(misfit: Misfit, x: np.ndarray) -> float:
+def _size(misfit: AnyMisfit, x: np.ndarray) -> float:
     """Size of the residuals [N], little moved by a few that are far off."""
     measured = misfit.measured
     residuals = np.sqrt(measured.weights) * (misfit(x).force - measured.force)
@@ -220,7 +239,7 @@ def _size(misfit: Misfit, x: np.ndarray) -> float:
 
 
 def _intervals(
-    misfit: Misfit, best: Least, spread: Spread, sigma: float, loss: str, level: float, profiles: bool
+    misfit: AnyMisfit, best: Least, spread: Spread, sigma: float, loss: str, level: float, profiles: bool
 ) -> tuple[np.ndarray, np.ndarray]:
     """Lower and upper ends in x, by standard errors or by profiles."""
     from scipy.stats import t

@@ -38,8 +38,9 @@ _DATA = {
     "file": (_WORDS, _TEXTS), "columns": (_NAMED,), "units": (_NAMED,), "held": (_NAMED,), "reverse": (_WORDS, _TEXTS),
     "absolute": (_FLAG,), "atmosphere": (_WORDS, _SIZE), "tests": (_WORDS,), "sheet": (_WORDS, _WHOLE),
     "header": (_WHOLE,), "decimal": (_WORDS,), "only": (_WORDS, _TEXTS), "branch": (_WORDS,), "points": (_WHOLE,),
+    "set": (_NAMED,),
 }  # fmt: skip
-"""Keys of [data]: those of `read_data`, and which points are used."""
+"""Keys of [data]: those of `read_data`, which points are used, and what of the muscle is another for these."""
 _CHOICE = ("only", "branch", "points")
 _OPTIONS = {
     "loss": (_WORDS,), "force_error": (_WORDS, _SIZE), "starts": (_WHOLE,), "level": (_NUMBER,), "profiles": (_FLAG,),
@@ -52,14 +53,16 @@ _RANGES = {"starts": (1, 1000), "tolerance": (1e-10, 1e-2)}
 class FitCase:
     """What a fit file says: the muscle, the points that are used, and the other arguments of `fit`."""
 
-    muscle: Muscle
-    data: Data
+    muscle: Muscle | tuple[Muscle, ...]  #: one for all data, or one for each of them
+    data: Data | tuple[Data, ...]
     free: dict[str, Any]
     options: dict[str, Any]  #: priors, offsets, weights, loss, ... where the file gives them
 
 
 def read_fit(path: str | PathLike[str], overrides: Iterable[str] = ()) -> FitCase:
-    """The fit in the file at `path`, with "dotted.name=value" overrides put in first: "options.starts=1".
+    """The fit in the file at `path`, whose data are one table or several ([[data]]).
+
+    Overrides "dotted.name=value" are put in first: "options.starts=1".
 
     Names are the muscle's unless they begin with another table's. Files of data are looked for beside the file.
     SpecError, in one line, for a file that cannot be read or is not TOML, and for whatever is wrong in it or in the
@@ -73,7 +76,7 @@ def read_fit(path: str | PathLike[str], overrides: Iterable[str] = ()) -> FitCas
         if name not in mapping:
             raise SpecError(name, allowed="is missing", advice=f"write a [{name}] table, {line}")
     for name, table in mapping.items():
-        if not isinstance(table, Mapping):
+        if not (isinstance(table, Mapping) or (name == "data" and _is_tables(table))):
             raise SpecError(name, table, "must be a table", f"write [{name}] with its keys below")
     muscle = from_mapping({"muscle": mapping["muscle"]}, test_required=False).muscle
     named = {name: dict(dotted(mapping[name])) for name in ("free", "priors", "offsets") if name in mapping}
@@ -84,8 +87,27 @@ def read_fit(path: str | PathLike[str], overrides: Iterable[str] = ()) -> FitCas
     if "weights" in mapping:
         options["weights"] = {str(test): _weight(str(test), value) for test, value in mapping["weights"].items()}
     free = options.pop("free")
-    data = _data(_checked("data", mapping["data"], _DATA), Path(path).parent)
-    return FitCase(muscle, data, free, options)
+    folder, given = Path(path).parent, mapping["data"]
+    if isinstance(given, Mapping):
+        return FitCase(*_measured("data", given, muscle, folder), free, options)
+    found = [_measured(f"data[{k}]", table, muscle, folder) for k, table in enumerate(given)]
+    muscles, data = zip(*found, strict=True)
+    return FitCase(muscle if all(one == muscle for one in muscles) else muscles, data, free, options)
+
+
+def _is_tables(given: Any) -> bool:
+    return isinstance(given, list) and bool(given) and all(isinstance(one, Mapping) for one in given)
+
+
+def _measured(name: str, given: Mapping[str, Any], muscle: Muscle, folder: Path) -> tuple[Muscle, Data]:
+    """The muscle of one [data] table, with what `set` changes, and its points."""
+    table = _checked(name, given, _DATA)
+    for field, value in dotted(table.pop("set", {})):
+        muscle = muscle.replace(field, value)
+    try:
+        return muscle, _data(table, folder)
+    except SpecError as error:
+        raise error.renamed(error.field.replace("data", name, 1)) from error
 
 
 def _checked(name: str, table: Mapping[str, Any], known: Mapping[str, tuple[tuple[type, str], ...]]) -> dict[str, Any]:

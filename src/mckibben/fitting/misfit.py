@@ -7,7 +7,7 @@ takes a smaller step.
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from typing import Any
 
 import attrs
@@ -17,6 +17,7 @@ from mckibben.data.values import Data
 from mckibben.fitting.forces import in_blocks
 from mckibben.fitting.free import Free, is_turned, put_in
 from mckibben.fitting.states import fitting_problem, ordered, seek
+from mckibben.measure.survey import errors
 from mckibben.model.extension import longest_of
 from mckibben.model.parameters import parameters
 from mckibben.solver.problem import Problem
@@ -51,6 +52,11 @@ class Points:
         ]
         points, force, tests, branches = (np.concatenate(column) for column in zip(*parts, strict=True))
         return cls(points, force, tests, branches, np.array([float(weights.get(name, 1.0)) for name in tests.tolist()]))
+
+    @classmethod
+    def joined(cls, parts: Sequence[Points]) -> Points:
+        """One after another."""
+        return cls(*(np.concatenate([getattr(one, field.name) for one in parts]) for field in attrs.fields(cls)))
 
     def some(self, chosen: np.ndarray) -> Points:
         """Some of the points."""
@@ -90,6 +96,16 @@ class Misfit:
         self.places = tuple(leaves.index(one.name) for one in self.free if one.name in leaves)
 
     @property
+    def muscles(self) -> tuple[Muscle, ...]:
+        """As given."""
+        return (self.muscle,)
+
+    @property
+    def of(self) -> np.ndarray:
+        """Which muscle each point is of."""
+        return np.zeros(len(self.measured.force), int)
+
+    @property
     def turned(self) -> np.ndarray:
         """Which numbers are the complement of what the muscle keeps (k)."""
         return np.array([is_turned(self.muscle, one.name) for one in self.free])
@@ -121,6 +137,17 @@ class Misfit:
         """The muscle at x on the present unknowns."""
         placed = self.problem or self.place_anew(x)
         return Problem.of(placed.basis, parameters(self._at(x)[0]), placed.b)
+
+    @property
+    def reached(self) -> bool:
+        """Whether every point has a state on the present unknowns, as they were last placed."""
+        return self.near is not None
+
+    def error(self, x: np.ndarray) -> float:
+        """Estimated relative error of the forces at x."""
+        self(x)
+        problem, near = self.problem_at(x), self.near
+        return 0.0 if near is None else float(errors(problem, near.u, near.loads).max())
 
     def __call__(self, x: np.ndarray) -> Seen:
         """Forces and derivatives at x."""

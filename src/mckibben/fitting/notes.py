@@ -6,8 +6,8 @@ from itertools import combinations
 
 import numpy as np
 
-from mckibben.fitting.misfit import Misfit
 from mckibben.fitting.search import Least
+from mckibben.fitting.together import AnyMisfit
 from mckibben.fitting.uncertain import Spread, members
 
 __all__ = ["notes_on"]
@@ -18,7 +18,7 @@ AT = 1e-3
 """Distance from a bound, over the range, at which a number counts as being there."""
 
 
-def notes_on(misfit: Misfit, best: Least, spread: Spread) -> list[str]:
+def notes_on(misfit: AnyMisfit, best: Least, spread: Spread) -> list[str]:
     """Sentences: what is open, what goes together, what is at a bound, what is not measured at all."""
     names = [one.name for one in misfit.free]
     notes = [] if best.converged else [f"the search was ended before it had settled: {best.message}"]
@@ -41,7 +41,8 @@ def notes_on(misfit: Misfit, best: Least, spread: Spread) -> list[str]:
         if min(x, 1.0 - x) < AT:
             side, bound = ("lower", one.low) if x < 0.5 else ("upper", one.high)
             notes.append(f"{one.name} is at its {side} bound, {one.text(bound)}: its interval says little")
-    assumed = [name for name in misfit.muscle.assumed if not any(_covers(name, one) for one in names)]
+    taken = dict.fromkeys(name for muscle in misfit.muscles for name in muscle.assumed)
+    assumed = [name for name in taken if not any(_covers(name, one) for one in names)]
     if assumed:
         notes.append("assumed, not fitted: " + ", ".join(assumed))
     signs = np.sign(misfit.measured.force)

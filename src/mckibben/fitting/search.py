@@ -9,7 +9,7 @@ from typing import Any
 import attrs
 import numpy as np
 
-from mckibben.fitting.misfit import Misfit
+from mckibben.fitting.together import AnyMisfit
 
 __all__ = ["LOSSES", "Least", "candidates", "cost_of", "least", "rows_of"]
 
@@ -32,7 +32,7 @@ class Least:
     converged: bool
 
 
-def rows_of(misfit: Misfit, x: np.ndarray, sigma: float) -> tuple[np.ndarray, np.ndarray]:
+def rows_of(misfit: AnyMisfit, x: np.ndarray, sigma: float) -> tuple[np.ndarray, np.ndarray]:
     """Residuals over their size, and their derivatives by x: those of the points, then those of what is known."""
     seen, measured = misfit(x), misfit.measured
     weight = np.sqrt(measured.weights) / sigma
@@ -46,13 +46,13 @@ def rows_of(misfit: Misfit, x: np.ndarray, sigma: float) -> tuple[np.ndarray, np
     return np.concatenate(residuals), np.concatenate(slopes)
 
 
-def cost_of(misfit: Misfit, x: np.ndarray, sigma: float) -> tuple[int, float]:
+def cost_of(misfit: AnyMisfit, x: np.ndarray, sigma: float) -> tuple[int, float]:
     """Of a start: how many points have no state, and half the sum of squares of the others."""
     residuals, _ = rows_of(misfit, x, sigma)
     return int(np.isnan(residuals).sum()), 0.5 * float(np.nansum(residuals**2))
 
 
-def candidates(misfit: Misfit, count: int) -> list[np.ndarray]:
+def candidates(misfit: AnyMisfit, count: int) -> list[np.ndarray]:
     """Starts: the muscle as given, then points that fill the range evenly (Sobol); the same ones every time."""
     k = len(misfit.free)
     start = np.clip(misfit.start, 0.02, 0.98)
@@ -66,7 +66,7 @@ def candidates(misfit: Misfit, count: int) -> list[np.ndarray]:
 
 
 def least(
-    misfit: Misfit, start: np.ndarray, sigma: float, loss: str, fixed: tuple[int, float] | None = None,
+    misfit: AnyMisfit, start: np.ndarray, sigma: float, loss: str, fixed: tuple[int, float] | None = None,
     watch: Callable[[int], None] = lambda count: None,
 ) -> Least:  # fmt: skip
     """Search from a start; one of the numbers may be fixed at a value of its x.

@@ -8,8 +8,8 @@ from __future__ import annotations
 import attrs
 import numpy as np
 
-from mckibben.fitting.misfit import Misfit
 from mckibben.fitting.search import Least, least
+from mckibben.fitting.together import AnyMisfit
 
 __all__ = ["OPEN", "Spread", "members", "profile", "spread_of"]
 
@@ -70,7 +70,7 @@ def spread_of(found: Least, known_size: bool) -> Spread:
 
 
 def profile(
-    misfit: Misfit, best: Least, spread: Spread, k: int, sigma: float, loss: str, distance: float
+    misfit: AnyMisfit, best: Least, spread: Spread, k: int, sigma: float, loss: str, distance: float
 ) -> tuple[float, float]:
     """x at which the sum of squares, least for number k held there, has grown by `distance` standard errors squared.
 

@@ -10,7 +10,7 @@ import numpy as np
 from mckibben.potential.evaluate import Table
 from mckibben.spec.errors import SpecError
 
-__all__ = ["c_source"]
+__all__ = ["c_source", "check_name"]
 
 _TEMPLATE = r"""/*
 @NOTES@
@@ -195,8 +195,7 @@ static inline double @NAME@_largest_radius(double length, double pressure) {
 
 def c_source(table: Table, notes: Iterable[str], name: str) -> str:
     """The file's text; SpecError for a name that C does not take."""
-    if not re.fullmatch(r"[A-Za-z]\w*", name, re.ASCII):
-        raise SpecError("to_c.name", name, "must be letters, digits and _, a letter first", 'such as "muscle"')
+    check_name(name, "to_c.name")
     _, n, m = table.series.shape
     arrays = {"series": table.series, "radius": table.radius, "low": table.low, "high": table.high,
               "springs": table.springs}  # fmt: skip
@@ -212,6 +211,12 @@ def c_source(table: Table, notes: Iterable[str], name: str) -> str:
         "NOTES": said,
     }  # fmt: skip
     return re.sub(r"@([A-Z0-9]+)@", lambda found: words[found[1]], _TEMPLATE)
+
+
+def check_name(name: str, field: str) -> None:
+    """SpecError for a name that C does not take."""
+    if not re.fullmatch(r"[A-Za-z]\w*", name, re.ASCII):
+        raise SpecError(field, name, "must be letters, digits and _, a letter first", 'such as "muscle"')
 
 
 def _array(name: str, values: np.ndarray) -> str:

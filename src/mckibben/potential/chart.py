@@ -89,7 +89,7 @@ class Chart(Shown):
 
     def air_volume(self, length: Any, pressure: Any) -> Any:
         """Volume [m^3] inside the braid without the rubber that lies inside."""
-        return self.volume(length, pressure) - float(self.data.attrs["rubber_inside"])
+        return self.volume(length, pressure) - self.rubber_inside
 
     def stiffness(self, length: Any, pressure: Any) -> Any:
         """dF/dh [N/m] at constant pressure."""
@@ -160,6 +160,11 @@ class Chart(Shown):
         from mckibben.potential.script import script
 
         return script(self.table, self.told)
+
+    @property
+    def rubber_inside(self) -> float:
+        """Volume [m^3] of the rubber that lies inside the braid."""
+        return float(self.data.attrs["rubber_inside"])
 
     @property
     def error(self) -> float:

@@ -39,20 +39,34 @@ class Fitted(Shown):
         given: the muscle from which the fit began.
         data: xarray Dataset: of each free `number` its value, error, low, high and bounds (SI), `correlation`; of each
             `point` length, pressure, force, predicted (SI), test and branch.
+        further: where several muscles were fitted together, those after the first.
     """
 
     muscle: Muscle
     given: Muscle
     data: xr.Dataset
+    further: tuple[Muscle, ...] = ()
 
     def __eq__(self, other: object) -> bool:
         if not isinstance(other, Fitted):
             return NotImplemented
-        same = self.muscle == other.muscle and self.given == other.given
+        same = self.muscles == other.muscles and self.given == other.given
         return same and bool(self.data.identical(other.data))
 
     def __hash__(self) -> int:
         return hash((self.muscle, self.given))
+
+    @property
+    def muscles(self) -> tuple[Muscle, ...]:
+        """All that were fitted together, in the order of their data."""
+        return (self.muscle, *self.further)
+
+    @property
+    def rest_lengths(self) -> np.ndarray:
+        """The length as made of each point's muscle [m]."""
+        whole = np.array([float(muscle.rest_length) for muscle in self.muscles])
+        of = self.data["of"].values if self.further else np.zeros(len(self.residuals), int)
+        return np.asarray(whole[of])
 
     @property
     def numbers(self) -> tuple[str, ...]:
@@ -159,4 +173,5 @@ class Fitted(Shown):
 
     def __repr__(self) -> str:
         counts = f"{len(self.numbers)} numbers to {len(self.residuals)} points"
+        counts += f" of {len(self.muscles)} muscles" if self.further else ""
         return f"<Fit: {counts}, {self.goodness}>"

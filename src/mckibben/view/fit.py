@@ -61,7 +61,7 @@ def _columns(fit: Fitted) -> dict[str, Any]:
     """What is drawn, in the units that people see."""
     data = fit.data
     return {
-        "contraction": 100.0 * (1.0 - data["length"].values / float(fit.muscle.rest_length)),
+        "contraction": 100.0 * (1.0 - data["length"].values / fit.rest_lengths),
         "pressure": style.shown(data["pressure"].values, "Pa"),
         "force": data["force"].values, "predicted": data["predicted"].values, "residual": fit.residuals,
     }  # fmt: skip
@@ -176,6 +176,7 @@ def _legend(figure: Figure, fit: Fitted, colours: dict[str, Any]) -> None:
 def _said(figure: Figure, fit: Fitted, tests: int) -> None:
     """The heading, and the notes below."""
     name = f'Muscle "{fit.muscle.name}"' if fit.muscle.name else "Muscle without a name"
+    name = f"{len(fit.muscles)} muscles" if fit.further else name
     many = f"{len(fit.residuals)} points of {tests} test{'s' if tests != 1 else ''}"
     share = fit.share(fit.largest)
     worst = f"{fit.largest:.3g} N" + ("" if np.isnan(share) else f" ({share:.2g} %)")
