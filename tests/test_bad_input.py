@@ -118,7 +118,7 @@ def test_a_least_pressure_that_was_not_found_says_how_far_it_was_sought(monkeypa
 def test_what_is_no_result_is_neither_drawn_nor_saved(given: object, tmp_path: Path) -> None:
     with pytest.raises(mk.SpecError, match=r"plot = .*: must be a result of run, solve"):
         mk.plot(given)
-    with pytest.raises(mk.SpecError, match=r"save = .*: must be what run, solve, fit or design gave"):
+    with pytest.raises(mk.SpecError, match=r"save = .*: must be what run, solve, .*gave"):
         mk.save(given, tmp_path / "out.nc")
     assert not (tmp_path / "out.nc").exists()
 

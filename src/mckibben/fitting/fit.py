@@ -107,7 +107,7 @@ def fit(
         "level": level, "intervals": "profile likelihood" if profiles else "standard errors", "loss": loss,
         "force_error": float(sigma * np.sqrt(spread.scale)), "message": best.message,
         "converged": int(best.converged), "evaluations": best.evaluations, "unknowns": misfit.size,
-        "source": ", ".join(one.source for one in several), "error_estimate": error,
+        "source": ", ".join(dict.fromkeys(one.source for one in several)), "error_estimate": error,
         "notes": "\n".join(dict.fromkeys([*notes, *(line for one in several for line in one.assumptions)])),
     }  # fmt: skip
     return answer(misfit, best, spread, (low, high), about)
