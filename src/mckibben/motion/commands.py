@@ -13,7 +13,7 @@ from mckibben.spec.controls import PID, Controller
 from mckibben.spec.errors import SpecError
 from mckibben.spec.held import Seen
 from mckibben.spec.rig import Rig
-from mckibben.spec.signals import TINY, Signal
+from mckibben.spec.signal import TINY, Signal
 from mckibben.units import show
 
 __all__ = ["Commands"]

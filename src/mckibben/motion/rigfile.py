@@ -16,7 +16,7 @@ from mckibben.spec.errors import SpecError, nearest
 from mckibben.spec.merge import apply_overrides
 from mckibben.spec.rig import Rig
 from mckibben.spec.rigtext import rig_from_mapping
-from mckibben.spec.signals import Series
+from mckibben.spec.series import Series
 
 __all__ = ["RigFile", "read_rig", "read_signal"]
 

@@ -17,7 +17,7 @@ from mckibben.results.answers import Sized
 from mckibben.spec.declared import evolved
 from mckibben.spec.errors import SpecError
 from mckibben.spec.rig import Rig
-from mckibben.spec.signals import Constant
+from mckibben.spec.signal import Constant
 from mckibben.units import UnitError, show, to_si
 
 __all__ = ["size_valve"]

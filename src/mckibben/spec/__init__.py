@@ -32,7 +32,9 @@ from mckibben.spec.path import Path, PathMode
 from mckibben.spec.ranged import Diameter, FibreSafety, FibreTension, ForceVariation, JammingMargin, Work
 from mckibben.spec.reference import reference_markdown
 from mckibben.spec.rig import Rig
-from mckibben.spec.signals import PWM, Constant, Jump, Ramp, Series, Sine
+from mckibben.spec.series import Series
+from mckibben.spec.signal import Constant
+from mckibben.spec.signals import PWM, Jump, Ramp, Sine
 from mckibben.spec.stiffening import Stiffening
 
 __all__ = [

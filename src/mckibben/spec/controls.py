@@ -9,7 +9,8 @@ from mckibben.spec.declared import Declared, Reads, declare
 from mckibben.spec.errors import SpecError
 from mckibben.spec.fields import choice, quantity, spec
 from mckibben.spec.held import Seen
-from mckibben.spec.signals import Signal, resolved
+from mckibben.spec.signal import Signal
+from mckibben.spec.signals import resolved
 from mckibben.units import show
 
 __all__ = ["CONTROLS", "PID", "UNITS", "Controller"]
@@ -59,7 +60,7 @@ class Controller:
 def _read_target(value: Any, field: str, declared: Declared) -> Any:
     if isinstance(value, Signal):
         return value
-    from mckibben.spec.signals import Constant
+    from mckibben.spec.signal import Constant
 
     return Constant(value)
 

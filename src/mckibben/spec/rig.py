@@ -13,7 +13,8 @@ from mckibben.spec.held import Seen
 from mckibben.spec.loads import LOADS, Held, Load, Pulley, Viscosity
 from mckibben.spec.muscle import Muscle
 from mckibben.spec.plausible import CONTROLLED
-from mckibben.spec.signals import SIGNALS, Signal, resolved
+from mckibben.spec.signal import Signal
+from mckibben.spec.signals import SIGNALS, resolved
 from mckibben.units import show
 
 __all__ = ["Rig"]
@@ -25,7 +26,7 @@ def _read_command(value: Any, field: str, declared: Declared) -> Any:
     if isinstance(value, Signal):
         return resolved(value, "1", field, -1.0, 1.0)
     if isinstance(value, (int, float)) and not isinstance(value, bool):
-        from mckibben.spec.signals import Constant
+        from mckibben.spec.signal import Constant
 
         try:
             return resolved(Constant(value), "1", field, -1.0, 1.0)

@@ -1,98 +1,21 @@
-"""What changes with time in a rig: signals, each as a function of time that knows where it jumps and where it ends."""
+"""What changes with time in a rig: signals by what a laboratory sets, and fields that take one."""
 
 from __future__ import annotations
 
 import math
-from bisect import bisect_right
 from typing import Any, ClassVar, TypeVar
 
 from mckibben.spec.declared import Declared, Reads, declare, describe, evolved
 from mckibben.spec.errors import SpecError, near
-from mckibben.spec.fields import choice, quantities, quantity, spec
-from mckibben.spec.held import Between
+from mckibben.spec.fields import quantity, spec
 from mckibben.spec.plausible import CONTROLLED, reading
-from mckibben.units import UnitError, show, split, to_si
+from mckibben.spec.series import Series
+from mckibben.spec.signal import TINY, Constant, Signal, read_value, time_field, value_field
+from mckibben.units import UnitError, show, to_si
 
-__all__ = ["PWM", "SIGNALS", "Constant", "Jump", "Ramp", "Series", "Signal", "Sine", "resolved", "signal_field"]
+__all__ = ["PWM", "SIGNALS", "Jump", "Ramp", "Sine", "resolved", "signal_field"]
 
-S = TypeVar("S", bound="Signal")
-TINY = 1e-9
-"""Part of a period, or of a second, by which a time may miss a jump."""
-
-
-def _read_value(value: Any, field: str, declared: Declared) -> Any:
-    """A number, or text with a unit as it stands: which unit it must be is known where the signal is used."""
-    if hasattr(value, "magnitude") and hasattr(value, "units"):
-        value = f"{value.magnitude!r} {value.units:D}"
-    if isinstance(value, str):
-        if split(value) is None:
-            raise SpecError(field, value, "must be a number, with its unit where it has one", 'such as "60 mm"')
-        return value
-    try:
-        return to_si(value, "1")
-    except UnitError as error:
-        raise SpecError(field, value, str(error)) from error
-
-
-def value_field(meaning: str, default: Any = None, **about: Any) -> Any:
-    """A value of a signal: a number or text with a unit."""
-    if default is not None:
-        about["default"] = default
-    return declare(Declared(kind="value", read=_read_value, meaning=meaning, **about))
-
-
-def _read_values(value: Any, field: str, declared: Declared) -> tuple[Any, ...]:
-    if isinstance(value, (str, bytes, dict)) or not hasattr(value, "__iter__"):
-        raise SpecError(field, value, "must be a list of values")
-    return tuple(_read_value(one, f"{field}[{k}]", declared) for k, one in enumerate(value))
-
-
-def time_field(meaning: str, **about: Any) -> Any:
-    return quantity("s", meaning=meaning, low=0.0, high=1e6, **about)
-
-
-class Signal:
-    """A quantity over time."""
-
-    __slots__ = ()
-    kind: ClassVar[str]
-    """Its word in files."""
-    steady: ClassVar[bool] = True
-    """Whether it is constant between its breaks."""
-
-    def __call__(self, t: float) -> float:
-        """Its value at a time [s]; at a jump that after it."""
-        raise NotImplementedError
-
-    def breaks(self, until: float) -> list[float]:
-        """Times [s] up to `until` at which it jumps or has a kink."""
-        return []
-
-    @property
-    def end(self) -> float:
-        """The last time [s] at which it has a value."""
-        return math.inf
-
-
-@spec("constant")
-class Constant(Signal):
-    """The same value all the time.
-
-    Args:
-        value: the value, such as 1 for a valve that is open, or "60 mm" where a length is wanted.
-
-    Raises:
-        SpecError: for what is no number.
-
-    >>> mk.Constant(0.5)(3.0)
-    0.5
-    """
-
-    kind: ClassVar[str] = "constant"
-    value: Reads[Any] = value_field("the value")
-
-    def __call__(self, t: float) -> float:
-        return float(self.value)
+S = TypeVar("S", bound=Signal)
 
 
 @spec("jump")
@@ -181,7 +104,7 @@ class Sine(Signal):
     kind: ClassVar[str] = "sine"
     steady: ClassVar[bool] = False
     amplitude: Reads[Any] = declare(
-        Declared(kind="value", read=_read_value, meaning="half of the way from the lowest to the highest value")
+        Declared(kind="value", read=read_value, meaning="half of the way from the lowest to the highest value")
     )
     frequency: Reads[float] = quantity("1/s", meaning="periods per second", low=0.0, low_open=True, high=1e4)
     mean: Reads[Any] = value_field("middle value", 0.0)
@@ -239,57 +162,6 @@ class PWM(Signal):
     @property
     def end(self) -> float:
         return float(self.duty.end)
-
-
-@spec("series")
-class Series(Signal):
-    """Values at given times, with straight lines between them or each held until the next.
-
-    Before the first time it has the first value. It ends with its last time: a simulation may not be longer.
-
-    Args:
-        time: times [s], each after the one before.
-        value: as many values.
-        between: "line" or "hold".
-
-    Raises:
-        SpecError: for lists of different length, times that do not rise, or what is no number.
-
-    >>> mk.Series(time=[0.0, 1.0, 2.0], value=[0.0, 1.0, -1.0])(0.5)
-    0.5
-    """
-
-    kind: ClassVar[str] = "series"
-    time: Reads[tuple[float, ...]] = quantities("s", meaning="times, each after the one before", size=(0.0, 1e6))
-    value: Reads[tuple[Any, ...]] = declare(Declared(kind="values", read=_read_values, meaning="as many values"))
-    between: Reads[Between] = choice(Between, meaning="what the values are between the times", default=Between.LINE)
-
-    def __attrs_post_init__(self) -> None:
-        if len(self.time) != len(self.value):
-            said = f"must be {len(self.time)} values, as many as there are times, not {len(self.value)}"
-            raise SpecError("series.value", allowed=said)
-        for k in range(1, len(self.time)):
-            if not self.time[k] > self.time[k - 1]:
-                said = f"must be after the time before, {show(self.time[k - 1], 's')}"
-                raise SpecError(f"series.time[{k}]", show(self.time[k], "s"), said)
-
-    @property
-    def steady(self) -> bool:  # type: ignore[override]
-        return self.between == Between.HOLD
-
-    def __call__(self, t: float) -> float:
-        k = bisect_right(self.time, t + TINY)
-        if k == 0 or k == len(self.time) or self.between == Between.HOLD:
-            return float(self.value[max(k - 1, 0)])
-        t0, t1, a, b = self.time[k - 1], self.time[k], self.value[k - 1], self.value[k]
-        return float(a + (b - a) * (t - t0) / (t1 - t0))
-
-    def breaks(self, until: float) -> list[float]:
-        return [t for t in self.time if t <= until]
-
-    @property
-    def end(self) -> float:
-        return self.time[-1]
 
 
 SIGNALS: dict[str, type] = {cls.kind: cls for cls in (Constant, Jump, Ramp, Sine, PWM, Series)}
