@@ -34,7 +34,9 @@ def test_an_effect_is_with_it_against_without(found: mk.Effects) -> None:
     assert_allclose(found.table.loc["ends that hold the radius", "force [%]"], 100.0 * (base.force / free.force - 1.0))
 
 
-def test_what_is_on_is_switched_off(found: mk.Effects) -> None:
+def test_what_is_on_is_switched_off(found: mk.Effects, monkeypatch: pytest.MonkeyPatch) -> None:
+    asked = [one for one in experiment.EFFECTS if one.name == "stretch of the fibres"]
+    monkeypatch.setattr(experiment, "EFFECTS", asked)  # the others have nothing to do with it, and are dear
     other = mk.effects(mk.presets.paper().replace("braid.fibre.stretch", True), **HELD)
     assert_allclose(
         other.table.loc["stretch of the fibres", "force [%]"], found.table.loc["stretch of the fibres", "force [%]"]
