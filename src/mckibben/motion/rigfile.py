@@ -44,7 +44,7 @@ def read_rig(path: str | PathLike[str], overrides: Iterable[str] = ()) -> RigFil
         overrides: changes that are made before it is read, each "dotted.name=value": "load.mass=3 kg", "until=2 s".
 
     Returns:
-        A RigFile with `rig` and `options`: mk.simulate(found.rig, **found.options).
+        A RigFile with `rig` and `options`: `mk.simulate(found.rig, **found.options)`.
 
     Raises:
         SpecError: for a file that cannot be read or is not TOML, and for whatever is wrong in it, in one line.

@@ -38,7 +38,7 @@ class Controller:
     Args:
         function: called as function(t, seen): the time [s], and a mapping of what is measured then, in SI: "length",
             "speed", "force", "pressure" (gauge); of two muscles on a pulley "angle" and "angular_speed" too, and what
-            belongs to the second muscle with "antagonist_" before it. It gives a command from -1 (vent) over 0
+            belongs to the second muscle with `antagonist_` before it. It gives a command from -1 (vent) over 0
             (closed) to 1 (fill), or two of them for two muscles.
         every: time between two calls [s].
 
