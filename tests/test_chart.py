@@ -60,7 +60,8 @@ def test_the_error_is_below_what_was_asked_for_and_what_is_stated_holds_elsewher
         np.abs(chart.largest_radius(curve.length, curve.pressure) - curve.data["r"].max("v")).max()
         < 2.0 * chart.radius_error
     )
-    np.testing.assert_allclose(chart.stored_energy(curve.length, curve.pressure), curve.data["energy"], atol=1e-3)
+    off = chart.stored_energy(curve.length, curve.pressure) - curve.data["energy"]
+    assert np.abs(off).max() < chart.volume_error * 3e5  # W + P V, and V is good to that
     assert found.inside.all()
 
 
@@ -97,7 +98,7 @@ def test_slopes_are_those_of_the_potential_inside_and_outside(chart: mk.Chart) -
 
 def test_so_they_are_where_the_edge_moves(moving: Table) -> None:
     h, P = np.random.default_rng(1).uniform([0.5, -0.2], [3.5, 1.2], (2000, 2)).T
-    near = (np.abs(P) < 1e-4) | (np.abs(P - 1.0) < 1e-4) | (np.abs(P - 0.2) < 0.0)
+    near = (np.abs(P) < 1e-4) | (np.abs(P - 1.0) < 1e-4)
     check_slopes(lambda h, P: in_blocks(moving, h, P), h, P, 1e-6, 1e-6, near)
     seen = in_blocks(moving, h, P)
     assert 0.3 < seen.inside.mean() < 0.7

@@ -200,8 +200,10 @@ def test_a_held_volume_gives_the_same_states(curve: Result) -> None:
     k = [1, 3, 4, 6]
     volumes = [f"{value!r} m^3" for value in curve.volume[k].tolist()]
     again = mk.run(MUSCLE, mk.Step(length="95 mm", volume=volumes))
-    np.testing.assert_allclose(again.pressure, curve.pressure[k], rtol=2e-4)
-    np.testing.assert_allclose(again.force, curve.force[k], rtol=2e-4)
+    # where it touches in part, the kink lies between two points, and the volume is less sure than the force
+    for rows, close in (([0, 1, 3], 1e-9), ([2], 2e-4)):
+        np.testing.assert_allclose(again.pressure[rows], curve.pressure[k][rows], rtol=close)
+        np.testing.assert_allclose(again.force[rows], curve.force[k][rows], rtol=close)
     assert set(again.verdict) == {"stable"}
 
 

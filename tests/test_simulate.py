@@ -82,7 +82,7 @@ class Cylinder:
 
 VALVE = mk.Valve(C="0.05 L/s/bar", b=0.3)
 PARTS = {"muscle": M, "supply": mk.Supply(gauge="6 bar"), "valve": VALVE}
-HELD = mk.Rig(load=mk.Held(length="100 mm"), command=1.0, **PARTS)
+HELD = mk.Rig(load=mk.FixedEnd(length="100 mm"), command=1.0, **PARTS)
 LIFT = mk.Rig(
     load=mk.Load(mass="5 kg", damping="20 N s/m"), command=mk.Jump(1.0, at="0.1 s"), pressure="1 bar", **PARTS
 )
@@ -448,7 +448,7 @@ REFUSED: dict[str, Callable[[], object]] = {
     r"rig.pressure = 7 bar: must be at most that of the supply, 6 bar gauge": without(pressure="7 bar"),
     r"rig.command = 2: must be at least -1 and at most 1": without(command=2),
     r"rig.command.amplitude": without(command=mk.Sine(0.8, "1 Hz", mean=0.5)),
-    r"rig.load: two muscles need a pulley, not Held": without(antagonist=M),
+    r"rig.load: two muscles need a pulley, not FixedEnd": without(antagonist=M),
     r"muscle.friction: is not simulated": without(muscle=M.replace("friction", mk.Friction(constant=1e-5))),
     r"pid.of = angle: is that of a pulley": without(command=mk.PID(of="angle", target=0.1, kp=1.0)),
     r"pid.target = 2 bar: has the wrong kind of unit": lambda: mk.PID(of="length", target="2 bar", kp=1.0),
@@ -459,8 +459,8 @@ REFUSED: dict[str, Callable[[], object]] = {
     r"rig.command = nan: is no command: the controller gave it at 0.01 s": lambda: mk.simulate(
         attrs.evolve(HELD, command=mk.Controller(lambda t, seen: math.nan if t > 0.005 else 1.0)), "1 s", chart=Vessel()
     ),
-    r"held.length = 160 mm: is outside of the map": lambda: mk.simulate(
-        attrs.evolve(HELD, load=mk.Held(length="160 mm")), "1 s", chart=Vessel()
+    r"fixed.length = 160 mm: is outside of the map": lambda: mk.simulate(
+        attrs.evolve(HELD, load=mk.FixedEnd(length="160 mm")), "1 s", chart=Vessel()
     ),
     r"load.start: is not given, and no equilibrium is between 50 mm and 150 mm": lambda: mk.simulate(
         attrs.evolve(LIFT, load=mk.Load(mass="500 kg")), "1 s", chart=Cylinder()

@@ -11,7 +11,7 @@ _PUBLIC = {
         "ArrudaBoyce", "AxialLaw", "Braid", "Chamber", "CustomLaw", "Ends", "Fibre", "Fittings", "Friction", "Gent",
         "Joint", "MooneyRivlin", "Muscle", "NeoHookean", "Ogden", "Rubber", "Yeoh", "BlockedForce", "FreeContraction",
         "Isobaric", "Isometric", "Isotonic", "Protocol", "Step", "Stiffening",
-        "SpecError", "Constant", "Controller", "Held", "Isothermal", "Jump", "Load", "PID", "PWM", "Polytropic",
+        "SpecError", "Constant", "Controller", "FixedEnd", "Isothermal", "Jump", "Load", "PID", "PWM", "Polytropic",
         "Pulley", "Ramp", "Rig", "Series", "Sine", "Supply", "Valve", "Viscosity", "WallHeat",
     ),
     "mckibben.spec.sleeve": ("centre_radius",),

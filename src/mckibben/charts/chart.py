@@ -17,7 +17,7 @@ from mckibben.measure.report import versions
 from mckibben.model.extension import longest
 from mckibben.model.parameters import parameters
 from mckibben.potential.chart import Chart
-from mckibben.potential.evaluate import Table, evaluate, largest_radius
+from mckibben.potential.evaluate import Table, evaluate, largest_radius, unbounded
 from mckibben.potential.table import variables_of
 from mckibben.spec import Muscle, SpecError, Step
 from mckibben.spec.text import to_toml
@@ -190,14 +190,13 @@ def _points(seen: Samples) -> Samples:
 
 def _within(edges: Edges, seen: Samples) -> Samples:
     """The good points that lie in a range."""
-    y = (np.sqrt(seen.pressure - edges.first + edges.soft) - edges.q[0]) / edges.q[1]
-    low, high = np.moveaxis(of_edges.lengths_in(edges, y), -1, 0)
+    low, high = np.moveaxis(of_edges.lengths_in(edges, edges.across(seen.pressure)), -1, 0)
     return seen.take(np.flatnonzero(seen.good & (seen.length >= low) & (seen.length <= high)))
 
 
 def _errors(table: Table, seen: Samples, scales: Scales) -> tuple[float, float, float]:
     """Largest errors of force, volume and radius at states, over the scales."""
-    free = table._replace(low=np.array([[-np.inf, 0.0]]), high=np.array([[np.inf, 0.0]]))
+    free = unbounded(table)
     found = evaluate(free, seen.length, seen.pressure)
     numbers = seen.numbers
     off = [np.abs(found.force - numbers["force"]).max() / scales.force,

@@ -66,8 +66,7 @@ def admissible(muscle: Muscle, edges: Edges) -> Edges:
 
 def narrowed(edges: Edges, seen: Samples) -> Edges:
     """The range without the points at which no state was found; SpecError where they are not at its edges."""
-    y = (np.sqrt(seen.pressure - edges.first + edges.soft) - edges.q[0]) / edges.q[1]
-    low, high = np.moveaxis(lengths_in(edges, y), -1, 0)
+    low, high = np.moveaxis(lengths_in(edges, edges.across(seen.pressure)), -1, 0)
     full = float((edges.high - edges.low).max())
     bad = ~seen.good & (seen.length >= low) & (seen.length <= high)
     share = (seen.length - low) / np.maximum(high - low, 1e-12)

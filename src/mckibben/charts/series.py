@@ -12,7 +12,7 @@ import numpy as np
 from numpy.polynomial import chebyshev
 
 from mckibben.charts.sample import Samples
-from mckibben.potential.evaluate import Table, edge, evaluate
+from mckibben.potential.evaluate import Table, across, edge, evaluate, unbounded
 from mckibben.potential.table import derived
 
 __all__ = ["Edges", "Scales", "fitted", "scales_of", "springs_of"]
@@ -53,6 +53,11 @@ class Edges:
     def q(self) -> tuple[float, float]:
         """Middle and half of the values of q."""
         return q_of(self.first, self.last, self.soft)
+
+    def across(self, pressure: np.ndarray) -> np.ndarray:
+        """Where pressures of the range lie on the axis of q, from -1 to 1."""
+        middle, half = self.q
+        return np.asarray((np.sqrt(pressure - self.first + self.soft) - middle) / half)
 
 
 def q_of(first: float, last: float, soft: float) -> tuple[float, float]:
@@ -153,8 +158,7 @@ def springs_of(table: Table) -> np.ndarray:
     """Force and stiffness of the springs beyond both edges: enough for the force not to fall back outside."""
     y = np.linspace(-1.0, 1.0, ENDS)
     P = np.clip((table.q[0] + table.q[1] * y) ** 2 - table.soft + table.first, table.first, table.last)
-    y = (np.sqrt(P - table.first + table.soft) - table.q[0]) / table.q[1]
-    free = table._replace(low=np.array([[-np.inf, 0.0]]), high=np.array([[np.inf, 0.0]]))
+    y, free = across(table, P), unbounded(table)
     found = []
     for side, knots in ((-1.0, table.low), (1.0, table.high)):
         lengths = edge(knots, y)[0][:, None] + side * table.width * np.linspace(0.0, 2.0, 9)
@@ -174,7 +178,7 @@ def _radius(good: Samples, made: Table, size: tuple[int, int]) -> np.ndarray:
     """The series of the largest radius, as smooth as can be; where it is the least one, the series may be below it."""
     n, m = min(size[0], WIDEST[0]), min(size[1], WIDEST[1])
     x = (good.length - made.length[0]) / made.length[1]
-    y = (np.sqrt(good.pressure - made.first + made.soft) - made.q[0]) / made.q[1]
+    y = across(made, good.pressure)
     X, Y = chebyshev.chebvander(x, n - 1), chebyshev.chebvander(y, m - 1)
     rows = (X[:, :, None] * Y[:, None, :]).reshape(len(x), -1)
     radius, least = good.numbers["largest_radius"], _least(good)

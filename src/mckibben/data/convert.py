@@ -12,13 +12,11 @@ from mckibben.data.numbers import numbers
 from mckibben.data.quantities import KINDS, QUANTITIES, remedy
 from mckibben.data.table import Table
 from mckibben.data.text import NUMERIC
+from mckibben.spec.constants import GRAVITY
 from mckibben.spec.errors import SpecError
 from mckibben.units import DISPLAY, UnitError, is_unit, scaled, show
 
-__all__ = ["GRAVITY", "Settings", "converted"]
-
-GRAVITY = 9.80665
-"""Standard acceleration of free fall [m/s^2]."""
+__all__ = ["Settings", "converted"]
 
 Settings = Mapping[str, Any]
 """`units` by quantity, `reverse` (quantities), `absolute` (or None), `atmosphere` [Pa], `mark`."""

@@ -17,6 +17,7 @@ from mckibben.data.numbers import decimal_mark
 from mckibben.data.quantities import KINDS, LABELS, QUANTITIES, remedy
 from mckibben.data.table import Table, table_of
 from mckibben.data.values import Data
+from mckibben.spec.constants import ATMOSPHERE
 from mckibben.spec.errors import SpecError, nearest
 from mckibben.units import Quantity, UnitError, to_si
 
@@ -34,7 +35,7 @@ def read_data(
     held: Mapping[str, Any] | None = None,
     reverse: Collection[str] = (),
     absolute: bool | None = None,
-    atmosphere: Quantity = 101325.0,
+    atmosphere: Quantity = ATMOSPHERE,
     tests: str | None = None,
     sheet: str | int | None = None,
     header: int | None = None,
@@ -111,7 +112,7 @@ def read(path: Any, otherwise: Mapping[str, float], **options: Any) -> Data:
         raise SpecError("decimal", given["decimal"], 'must be "." or ","')
     settings: Settings = {
         "units": units, "reverse": _listed(given.get("reverse", ())), "absolute": given.get("absolute"),
-        "atmosphere": _si(given.get("atmosphere", 101325.0), "pressure", "atmosphere"), "mark": given.get("decimal"),
+        "atmosphere": _si(given.get("atmosphere", ATMOSPHERE), "pressure", "atmosphere"), "mark": given.get("decimal"),
     }  # fmt: skip
     by = given.get("tests")
     if by in QUANTITIES and by not in TOLD_APART:

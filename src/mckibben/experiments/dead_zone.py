@@ -54,10 +54,10 @@ class DeadZone:
     (0.137, 0.1683)
     """
 
-    length: float  #: [m]
-    begins: float  #: gauge pressure [Pa] from which it touches anywhere; NaN where it never does
-    ends: float  #: gauge pressure [Pa] from which it touches all along the braid; NaN where it never does
-    force: float  #: of the muscle [N] where it has come to touch everywhere
+    length: float
+    begins: float
+    ends: float
+    force: float
 
 
 @kernel

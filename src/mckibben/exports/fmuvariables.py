@@ -6,6 +6,8 @@ from typing import Any
 
 import attrs
 
+from mckibben.spec.constants import ATMOSPHERE, GRAVITY, ROOM_TEMPERATURE
+
 __all__ = ["Variable", "muscle_variables", "rig_variables"]
 
 
@@ -59,15 +61,15 @@ def rig_variables(mass: float, pressures: tuple[float, float]) -> tuple[Variable
         Variable("push", "input", "N", "force that lengthens the muscle, beside the weight of the mass", 0.0),
         parameter("mass", "kg", mass, "mass that hangs on the muscle"),
         parameter("damping", "N.s/m", 20.0, "force against the motion, over the speed (assumed)"),
-        parameter("gravity", "m/s2", 9.80665, "acceleration that lengthens the muscle; 0 for a mass on a table"),
+        parameter("gravity", "m/s2", GRAVITY, "acceleration that lengthens the muscle; 0 for a mass on a table"),
         parameter("supply", "Pa", pressures[1], "gauge pressure of the supply"),
         parameter("conductance", "m3/(s.Pa)", 1e-9, "sonic conductance from the supply, ISO 6358 (assumed)"),
         parameter("vent", "m3/(s.Pa)", 1e-9, "sonic conductance to the atmosphere, ISO 6358 (assumed)"),
         parameter("critical_ratio", "", 0.3, "ratio of pressures below which the flow is choked, ISO 6358 (assumed)"),
         parameter("tube", "m3", 0.0, "volume between valve and muscle"),
         parameter("exponent", "", 1.0, "of the air: 1 is isothermal, 1.4 is adiabatic"),
-        parameter("atmosphere", "Pa", 101325.0, "absolute pressure around"),
-        parameter("temperature_around", "K", 293.15, "temperature around and of the supply"),
+        parameter("atmosphere", "Pa", ATMOSPHERE, "absolute pressure around"),
+        parameter("temperature_around", "K", ROOM_TEMPERATURE, "temperature around and of the supply"),
         parameter("pressure_start", "Pa", max(pressures[0], 0.0), "gauge pressure at the start"),
         parameter("length_start", "m", 0.0, "length at the start; 0 for the one at rest"),
         parameter("step", "s", 2e-3, "longest step of the integration within a step of communication"),

@@ -4,12 +4,11 @@ from __future__ import annotations
 
 import io
 import json
-from typing import Any
 
 import numpy as np
 
 from mckibben.potential.chart import Chart
-from mckibben.potential.grid import Grid, grid
+from mckibben.potential.grid import COLUMNS, grid
 
 __all__ = ["as_json", "as_mat"]
 
@@ -23,7 +22,7 @@ def as_mat(chart: Chart, lengths: int, pressures: int) -> bytes:
 
     content = io.BytesIO()
     found = grid(chart, lengths, pressures)
-    tables = {name: np.asarray(value, float) for name, value in _tables(found).items()}
+    tables = {name: np.asarray(value, float) for name, value in found.tables.items()}
     savemat(content, {"length": found.length, "pressure": found.pressure, **tables, "notes": "\n".join(chart.told),
                       "force_error": found.error}, oned_as="column")  # fmt: skip
     made = content.getvalue()
@@ -33,24 +32,12 @@ def as_mat(chart: Chart, lengths: int, pressures: int) -> bytes:
 def as_json(chart: Chart, lengths: int, pressures: int) -> str:
     """One object: breakpoints, tables over [length][pressure], errors, notes; SI."""
     found = grid(chart, lengths, pressures)
-    tables = {name: np.asarray(value, float).tolist() for name, value in _tables(found).items()}
+    tables = {name: np.asarray(value, float).tolist() for name, value in found.tables.items()}
     about = chart.data.attrs
     held = {
         "length": found.length.tolist(), "pressure": found.pressure.tolist(), **tables,
         "errors": {"force": chart.force_error, "volume": chart.volume_error, "largest_radius": chart.radius_error,
                    "force_between_breakpoints": found.error},
-        "units": UNITS, "notes": list(chart.told), "mckibben_version": str(about["mckibben_version"]),
+        "units": COLUMNS, "notes": list(chart.told), "mckibben_version": str(about["mckibben_version"]),
     }  # fmt: skip
     return json.dumps(held, indent=1) + "\n"
-
-
-def _tables(found: Grid) -> dict[str, Any]:
-    values = found.values
-    return {"force": values.force, "volume": values.volume, "stiffness": values.stiffness,
-            "volume_by_length": values.volume_by_length, "volume_by_pressure": values.volume_by_pressure,
-            "largest_radius": found.largest_radius, "inside": values.inside}  # fmt: skip
-
-
-UNITS = {"length": "m", "pressure": "Pa", "force": "N", "volume": "m^3", "stiffness": "N/m", "volume_by_length": "m^2",
-         "volume_by_pressure": "m^3/Pa", "largest_radius": "m", "inside": "1"}  # fmt: skip
-"""Units of what the tables hold."""

@@ -8,11 +8,11 @@ from xml.sax.saxutils import quoteattr
 from mckibben.exports.affine import Affine, affine
 from mckibben.potential.c_source import check_name
 from mckibben.potential.chart import Chart
+from mckibben.spec.constants import GRAVITY
 from mckibben.units import show
 
 __all__ = ["as_mjcf", "default_mass"]
 
-GRAVITY = 9.80665
 LAG = 0.05
 """Time constant [s] of the pressure behind the control."""
 DAMPED = 0.05

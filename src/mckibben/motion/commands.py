@@ -9,9 +9,8 @@ from typing import Any
 
 import attrs
 
-from mckibben.spec.controls import PID, Controller
+from mckibben.spec.controls import PID, Controlled, Controller
 from mckibben.spec.errors import SpecError
-from mckibben.spec.held import Seen
 from mckibben.spec.rig import Rig
 from mckibben.spec.signal import TINY, Signal
 from mckibben.units import show
@@ -45,7 +44,7 @@ class _Sampled:
     def _pid(self, t: float, measured: Mapping[str, float]) -> tuple[float, float]:
         pid = self.given
         assert isinstance(pid, PID)
-        now, sign = measured[str(pid.of)], -1.0 if pid.of == Seen.LENGTH else 1.0
+        now, sign = measured[str(pid.of)], -1.0 if pid.of == Controlled.LENGTH else 1.0
         error = sign * (pid.target(t + TINY) - now)
         raw = 0.0 if self.seen is None else -sign * (now - self.seen) / pid.every
         self.seen = now

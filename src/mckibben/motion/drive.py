@@ -146,7 +146,7 @@ def _when(plant: Plant, smooth: Any, ended: Ended, last: float, reached: float) 
 
 def _wake(plant: Plant, t: float, y: list[float], done: Driven) -> None:
     """After a jump of a command or a load, friction or a stop may hold no longer."""
-    if plant.mode.moves == "free" or plant.rig.held:
+    if plant.mode.moves == "free" or plant.rig.fixed:
         return
     found = plant.rates(t, y)
     for ended, margin in margins(plant, t, y).items():

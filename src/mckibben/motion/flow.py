@@ -4,15 +4,17 @@ from __future__ import annotations
 
 import math
 
+from mckibben.spec.constants import HEAT_RATIO, ROOM_TEMPERATURE
+
 __all__ = ["GAMMA", "GAS", "HEAT", "LAMINAR", "NORMAL", "RHO", "TEMPERATURE", "mass_flow"]
 
 GAS = 287.05
 """Gas constant of air [J/kg/K]."""
-GAMMA = 1.4
+GAMMA = HEAT_RATIO
 """Ratio of its heat capacities."""
 HEAT = GAS * GAMMA / (GAMMA - 1.0)
 """Its heat capacity at constant pressure [J/kg/K]."""
-RHO, TEMPERATURE = 1.185, 293.15
+RHO, TEMPERATURE = 1.185, ROOM_TEMPERATURE
 """Density [kg/m^3] and temperature [K] to which sonic conductances refer (ISO 8778)."""
 NORMAL = 1.2928
 """Mass of a normal cubic metre [kg], at 0 degC and 1.01325 bar (DIN 1343)."""

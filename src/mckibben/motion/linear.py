@@ -59,7 +59,7 @@ def bode(rig: Rig, *, frequency: Any, of: str = "", by: str = "push", chart: Any
     """
     if not isinstance(rig, Rig):
         raise SpecError("bode.rig", rig, "must be a Rig")
-    if rig.held:
+    if rig.fixed:
         raise SpecError("bode.rig", allowed="is held: nothing moves", advice="give it a Load or a Pulley")
     name = of or ("angle" if rig.turns else "length")
     if name not in ANSWERS or (name == "angle" and not rig.turns):
@@ -81,9 +81,9 @@ def bode(rig: Rig, *, frequency: Any, of: str = "", by: str = "push", chart: Any
     rows = _moving(plant)
     A = _jacobian(plant, y, rows)
     B = _by_push(plant, rows) if by == "push" else _by_command(plant, y, rows)
-    C, D = _answer(plant, y, rows, name, by)
+    C = _answer(plant, y, rows, name)
     eye = np.eye(len(rows))
-    response = np.array([C @ np.linalg.solve(2j * np.pi * f * eye - A, B) + D for f in hertz])
+    response = np.array([C @ np.linalg.solve(2j * np.pi * f * eye - A, B) for f in hertz])
     names = ["angle" if rig.turns else "length", "speed"]
     for k in range(plant.n):
         names += [f"{one}{'_2' if k else ''}" for one in ("pressure_absolute", "temperature", "viscous force")]
@@ -152,7 +152,7 @@ def _by_command(plant: Plant, y: np.ndarray, rows: list[int]) -> np.ndarray:
     return slope
 
 
-def _answer(plant: Plant, y: np.ndarray, rows: list[int], name: str, by: str) -> tuple[np.ndarray, float]:
+def _answer(plant: Plant, y: np.ndarray, rows: list[int], name: str) -> np.ndarray:
     """The answer as a row over the moving numbers."""
     found = np.zeros(len(rows))
     if name == "angle":
@@ -167,4 +167,4 @@ def _answer(plant: Plant, y: np.ndarray, rows: list[int], name: str, by: str) ->
             step[row] = STEP * size
             up, down = (plant.rates(0.0, (y + sign * step).tolist()).muscles[0].force for sign in (1.0, -1.0))
             found[k] = (up - down) / (2.0 * STEP * size)
-    return found, 0.0
+    return found

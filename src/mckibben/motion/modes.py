@@ -32,7 +32,7 @@ def margins(plant: Plant, t: float, y: Sequence[float]) -> dict[Ended, float]:
             found["low", 0] = y[0] - low if y[1] < 0.0 else math.inf
         if high is not None:
             found["high", 0] = high - y[0] if y[1] > 0.0 else math.inf
-        if plant.friction and not plant.rig.held:
+        if plant.friction and not plant.rig.fixed:
             found["turn", 0] = mode.sliding * y[1] + SPEED
     elif rates is not None and mode.moves == "stuck":
         found["slip", 0] = plant.friction - abs(rates.push)

@@ -114,7 +114,7 @@ class Plant:
 
     def rates(self, t: float, y: Sequence[float]) -> Rates:
         """Rates of the state at a time."""
-        mode, moves = self.mode, self.mode.moves == "free" and not self.rig.held
+        mode, moves = self.mode, self.mode.moves == "free" and not self.rig.fixed
         x, v = y[0], (y[1] if moves else 0.0)
         outer = self.outside(t)
         push = self.weight + outer - self.damping * v - self.spring * (x - self.rest)

@@ -15,7 +15,7 @@ from mckibben.motion.flow import GAMMA, NORMAL
 from mckibben.motion.mapped import Mapped
 from mckibben.motion.plant import FIRST, PER, Plant, Seen
 from mckibben.results.motion import OF_MUSCLES, OF_RIG, TURNING, Motion
-from mckibben.spec.loads import Held, Load
+from mckibben.spec.loads import FixedEnd, Load
 from mckibben.spec.rigtext import rig_to_toml
 from mckibben.units import show
 
@@ -124,7 +124,7 @@ def _version() -> str:
 def _title(plant: Plant) -> str:
     load, rig = plant.rig.load, plant.rig
     names = " against ".join(f'"{muscle.name}"' if muscle.name else "a muscle" for muscle in rig.muscles)
-    if isinstance(load, Held):
+    if isinstance(load, FixedEnd):
         return f"{names} held at {show(load.length, 'm', 4)}"
     if isinstance(load, Load):
         return f"{names} with {show(load.mass, 'kg', 4)}"
@@ -143,7 +143,7 @@ def _notes(plant: Plant, done: Driven, seen: dict[str, np.ndarray], variables: d
             found.append(f"{name} is outside of its map at {count}, first at {first}: {said}")
         force = seen["force"][:, k].astype(float)
         pushing = force < -PUSHES * max(float(np.abs(force).max()), 1e-9)
-        if pushing.any() and not plant.rig.held and not plant.slackens:
+        if pushing.any() and not plant.rig.fixed and not plant.slackens:
             at = show(float(times[pushing][0]), "s", 4)
             found.append(f"{name} pushes, first at {at}: on a cable it would be slack (slack = true)")
     found += _of_balance(variables)

@@ -51,7 +51,7 @@ def read_rig(path: str | PathLike[str], overrides: Iterable[str] = ()) -> RigFil
 
     >>> from pathlib import Path
     >>> text = 'until = "1 s"\\ncommand = 1.0\\n[muscle]\\npreset = "paper"\\n'
-    >>> text += '[load]\\nkind = "held"\\nlength = "0.1 m"\\n'
+    >>> text += '[load]\\nkind = "fixed"\\nlength = "0.1 m"\\n'
     >>> text += '[supply]\\ngauge = "2 bar"\\n[valve]\\nC = "0.02 L/s/bar"\\n'
     >>> written = Path("rig.toml").write_text(text)
     >>> found = mk.read_rig("rig.toml", ["load.length=90 mm"])

@@ -64,7 +64,7 @@ def simulate(
             controller that gives no number, an unknown method.
 
     >>> rig = mk.Rig(
-    ...     muscle=mk.presets.paper(), load=mk.Held(length="100 mm"), command=1.0,
+    ...     muscle=mk.presets.paper(), load=mk.FixedEnd(length="100 mm"), command=1.0,
     ...     supply=mk.Supply(gauge="2 bar"), valve=mk.Valve(C="0.1 L/s/bar", b=0.3),
     ... )
     >>> motion = mk.simulate(rig, until="1 s")
@@ -109,7 +109,7 @@ def simulate_many(
         SpecError: as `simulate`, with the number of the rig.
 
     >>> rig = mk.Rig(
-    ...     muscle=mk.presets.paper(), load=mk.Held(length="100 mm"), command=1.0,
+    ...     muscle=mk.presets.paper(), load=mk.FixedEnd(length="100 mm"), command=1.0,
     ...     supply=mk.Supply(gauge="2 bar"), valve=mk.Valve(C="0.1 L/s/bar", b=0.3),
     ... )
     >>> motions = mk.simulate_many([rig, rig], until="0.1 s", workers=1)

@@ -48,7 +48,7 @@ def size_valve(rig: Rig, within: Any, *, pressure: Any, vent: bool = False, char
         SpecError: for a pressure that the supply does not reach, or a time in which no valve does it.
 
     >>> rig = mk.Rig(
-    ...     muscle=mk.presets.paper(), load=mk.Held(length="100 mm"), supply=mk.Supply(gauge="2 bar"),
+    ...     muscle=mk.presets.paper(), load=mk.FixedEnd(length="100 mm"), supply=mk.Supply(gauge="2 bar"),
     ...     valve=mk.Valve(C="1 L/s/bar", b=0.3), tube="5 mL",
     ... )
     >>> found = mk.size_valve(rig, within="0.2 s", pressure="1.5 bar")

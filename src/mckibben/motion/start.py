@@ -31,9 +31,9 @@ def at_rest(plant: Plant) -> list[float]:
     """The state at the start. SpecError where it is outside of the map, or where there is no equilibrium."""
     rig = plant.rig
     load = rig.load
-    given = load.length if rig.held else load.start
+    given = load.length if rig.fixed else load.start
     low, high = _room(plant)
-    name = "held.length" if rig.held else f"{load.kind}.start"
+    name = "fixed.length" if rig.fixed else f"{load.kind}.start"
     unit = "rad" if rig.turns else "m"
     for k, P in enumerate(rig.pressures):
         first, last = plant.charts[k].pressures

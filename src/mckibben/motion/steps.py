@@ -45,7 +45,7 @@ def step_response(
         SpecError: for an unknown quantity, a time outside of the motion, or a quantity that does not change.
 
     >>> rig = mk.Rig(
-    ...     muscle=mk.presets.paper(), load=mk.Held(length="100 mm"), command=mk.Jump(1.0, at="0.1 s"),
+    ...     muscle=mk.presets.paper(), load=mk.FixedEnd(length="100 mm"), command=mk.Jump(1.0, at="0.1 s"),
     ...     supply=mk.Supply(gauge="2 bar"), valve=mk.Valve(C="0.1 L/s/bar", b=0.3),
     ... )
     >>> print(mk.step_response(mk.simulate(rig, until="1 s"), of="pressure", at="0.1 s"))
@@ -54,7 +54,7 @@ def step_response(
     if not isinstance(motion, Motion):
         raise SpecError("step_response.motion", motion, "must be what simulate gives")
     name = of or (
-        "angle" if "angle" in motion.data else "pressure" if motion.data.attrs["load"] == "held" else "length"
+        "angle" if "angle" in motion.data else "pressure" if motion.data.attrs["load"] == "fixed" else "length"
     )
     values, unit = _values(motion, name, muscle)
     begin = float(at) if isinstance(at, (int, float)) and at == 0 else read_time(at, "step_response.at")
@@ -133,7 +133,7 @@ def per_cycle(motion: Motion, period: Any, *, end: Any = None) -> Cycle:
         SpecError: for a period longer than the motion.
 
     >>> rig = mk.Rig(
-    ...     muscle=mk.presets.paper(), load=mk.Held(length="100 mm"), command=mk.PWM(0.5, frequency="1 Hz"),
+    ...     muscle=mk.presets.paper(), load=mk.FixedEnd(length="100 mm"), command=mk.PWM(0.5, frequency="1 Hz"),
     ...     supply=mk.Supply(gauge="2 bar"), valve=mk.Valve(C="0.05 L/s/bar", b=0.3),
     ... )
     >>> cycle = mk.per_cycle(mk.simulate(rig, until="2 s"), period="1 s")

@@ -10,7 +10,7 @@ import attrs
 import numpy as np
 
 from mckibben.potential import inverse
-from mckibben.potential.evaluate import Table, Values, evaluate, in_blocks, largest_radius
+from mckibben.potential.evaluate import Table, Values, across, edge, evaluate, in_blocks, largest_radius
 from mckibben.potential.scalar import scalar
 from mckibben.potential.table import table_of
 from mckibben.shown import Shown
@@ -111,11 +111,8 @@ class Chart(Shown):
 
     def lengths(self, pressure: Any) -> tuple[Any, Any]:
         """The shortest and the longest length [m] of the range at a pressure."""
-        from mckibben.potential.evaluate import edge
-
-        P, table = _read("pressure", pressure, "Pa"), self.table
-        y = (np.sqrt(np.clip(P, table.first, table.last) - table.first + table.soft) - table.q[0]) / table.q[1]
-        return edge(table.low, y)[0], edge(table.high, y)[0]
+        y = across(self.table, _read("pressure", pressure, "Pa"))
+        return edge(self.table.low, y)[0], edge(self.table.high, y)[0]
 
     @property
     def pressures(self) -> tuple[float, float]:

@@ -81,6 +81,17 @@ def spring(t: Any, width: Any, force: Any, stiffness: Any, xp: Any = np) -> tupl
     )
 
 
+def across(table: Table, pressure: Any, xp: Any = np) -> Any:
+    """Where pressures lie on the axis of q, from -1 at the lowest to 1 at the highest; at an end beyond them."""
+    P = xp.clip(pressure, table.first, table.last)
+    return (xp.sqrt(P - table.first + table.soft) - table.q[0]) / table.q[1]
+
+
+def unbounded(table: Table) -> Table:
+    """The series alone, without edges in length."""
+    return table._replace(low=np.array([[-np.inf, 0.0]]), high=np.array([[np.inf, 0.0]]))
+
+
 def evaluate(table: Table, length: Any, pressure: Any, xp: Any = np) -> Values:
     """All that a map tells, at points (N) each; with `xp=jax.numpy` inside compiled and differentiated functions."""
     P = xp.clip(pressure, table.first, table.last)
@@ -135,8 +146,7 @@ def evaluate(table: Table, length: Any, pressure: Any, xp: Any = np) -> Values:
 
 def largest_radius(table: Table, length: Any, pressure: Any, xp: Any = np) -> Any:
     """Largest radius [m] along the muscle, at points (N) each; outside of the range that of the nearest edge."""
-    P = xp.clip(pressure, table.first, table.last)
-    y = (xp.sqrt(P - table.first + table.soft) - table.q[0]) / table.q[1]
+    y = across(table, pressure, xp)
     h = xp.clip(length, edge(table.low, y, xp)[0], edge(table.high, y, xp)[0])
     n, m = table.radius.shape
     found = (chebyshev((h - table.length[0]) / table.length[1], n, xp) * (table.radius @ chebyshev(y, m, xp))).sum(0)

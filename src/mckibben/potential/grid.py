@@ -15,7 +15,7 @@ __all__ = ["COLUMNS", "Grid", "grid", "table"]
 
 COLUMNS = {
     "length": "m", "pressure": "Pa", "force": "N", "volume": "m^3", "stiffness": "N/m", "volume_by_length": "m^2",
-    "volume_by_pressure": "m^3/Pa", "largest_radius": "m", "inside": "",
+    "volume_by_pressure": "m^3/Pa", "largest_radius": "m", "inside": "1",
 }  # fmt: skip
 """What is told at every point, with units."""
 LENGTHS, PRESSURES = 56, 31
@@ -31,6 +31,12 @@ class Grid:
     values: Values
     largest_radius: np.ndarray
     error: float  #: largest error of the force [N] of linear interpolation between the breakpoints, in the range
+
+    @property
+    def tables(self) -> dict[str, np.ndarray]:
+        """All but the breakpoints, by their names in `COLUMNS`."""
+        own = self.values._asdict() | {"largest_radius": self.largest_radius}
+        return {name: np.asarray(own[name]) for name in list(COLUMNS)[2:]}
 
 
 def grid(chart: Chart, lengths: int = LENGTHS, pressures: int = PRESSURES) -> Grid:
@@ -57,10 +63,10 @@ def table(chart: Chart, lengths: int = LENGTHS, pressures: int = PRESSURES) -> s
     """The grid as CSV, a line for each point."""
     found, text = grid(chart, lengths, pressures), io.StringIO(newline="")
     writer = csv.writer(text, lineterminator="\n")
-    writer.writerow([f"{name} [{unit}]" if unit else name for name, unit in COLUMNS.items()])
-    columns = [*np.meshgrid(found.length, found.pressure, indexing="ij"),
-               *(getattr(found.values, name) for name in list(COLUMNS)[2:7]), found.largest_radius]  # fmt: skip
-    inside = found.values.inside.ravel().astype(int).tolist()
+    writer.writerow([f"{name} [{unit}]" if unit != "1" else name for name, unit in COLUMNS.items()])
+    tables = found.tables
+    inside = tables.pop("inside").ravel().astype(int).tolist()
+    columns = [*np.meshgrid(found.length, found.pressure, indexing="ij"), *tables.values()]
     for numbers, within in zip(np.stack([one.ravel() for one in columns], axis=1).tolist(), inside, strict=True):
         writer.writerow([*numbers, within])  # str of a float has all its digits
     return text.getvalue()

@@ -6,7 +6,7 @@ from collections.abc import Callable
 
 import numpy as np
 
-from mckibben.potential.evaluate import Table, edge, in_blocks
+from mckibben.potential.evaluate import Table, across, edge, in_blocks
 
 __all__ = ["length_for", "pressure_for"]
 
@@ -17,7 +17,7 @@ LOOKED_AT = 65
 def length_for(table: Table, pressure: np.ndarray, force: np.ndarray) -> np.ndarray:
     """The longest length [m] of the range at which a muscle pulls a force [N] at a pressure [Pa]."""
     P = np.clip(pressure, table.first, table.last)
-    y = (np.sqrt(P - table.first + table.soft) - table.q[0]) / table.q[1]
+    y = across(table, P)
 
     def residue(h: np.ndarray, P: np.ndarray, force: np.ndarray) -> np.ndarray:
         return in_blocks(table, h, P).force - force

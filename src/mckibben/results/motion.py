@@ -62,7 +62,7 @@ class Motion(Shown):
         data: xarray Dataset over `time` [s] with all that was seen, SI; of two muscles over `muscle` too.
 
     >>> rig = mk.Rig(
-    ...     muscle=mk.presets.paper(), load=mk.Held(length="100 mm"), command=1.0,
+    ...     muscle=mk.presets.paper(), load=mk.FixedEnd(length="100 mm"), command=1.0,
     ...     supply=mk.Supply(gauge="2 bar"), valve=mk.Valve(C="0.1 L/s/bar", b=0.3),
     ... )
     >>> motion = mk.simulate(rig, until="1 s")

@@ -19,7 +19,7 @@ from mckibben.results.result import Result
 from mckibben.results.told import verdict
 from mckibben.results.verdict import Verdict
 from mckibben.spec import BlockedForce, FreeContraction, Isobaric, Muscle, Protocol, Step, Test
-from mckibben.spec.loading import ATMOSPHERE
+from mckibben.spec.constants import ATMOSPHERE
 from mckibben.spec.plausible import trusted
 
 __all__ = ["Fact", "Facts", "Level", "cautions_once", "facts"]

@@ -10,7 +10,7 @@ from mckibben.measure.report import versions
 from mckibben.sheet.facts import Fact, Facts
 from mckibben.spec import Muscle, presets
 from mckibben.spec.change import CHANGED
-from mckibben.spec.loading import ATMOSPHERE
+from mckibben.spec.constants import ATMOSPHERE
 from mckibben.spec.rows import ASSUMED, muscle_rows
 from mckibben.units import show
 

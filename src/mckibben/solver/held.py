@@ -17,7 +17,7 @@ from mckibben.compiled.arrays import Array
 from mckibben.discretise.fields import Placed
 from mckibben.model.parameters import Number, Parameters
 from mckibben.solver.system import System
-from mckibben.spec.loading import ATMOSPHERE
+from mckibben.spec.constants import ATMOSPHERE, HEAT_RATIO
 
 __all__ = ["GASES", "NAMES", "Conditions", "Held", "Now", "conditions", "read_rows"]
 
@@ -57,7 +57,7 @@ ROWS: dict[str, Row] = {
     "pressure": lambda now, t: now.pressure - t,
     "closure": lambda now, t: now.closure - t,
     "isothermal": _sealed(1.0),
-    "adiabatic": _sealed(1.4),
+    "adiabatic": _sealed(HEAT_RATIO),
 }
 """Rows by name: slow enough to exchange heat, or too fast to (air), for the sealed ones."""
 GASES = ("isothermal", "adiabatic")

@@ -25,7 +25,7 @@ from mckibben.spec.loading import (
     Step,
     Test,
 )
-from mckibben.spec.loads import Held, Load, Pulley, Viscosity
+from mckibben.spec.loads import FixedEnd, Load, Pulley, Viscosity
 from mckibben.spec.measures import AirVolume, CurveMiss, ForceAt, Mass, PressureFor, Stroke
 from mckibben.spec.muscle import Braid, Joint, Muscle
 from mckibben.spec.path import Path, PathMode
@@ -59,13 +59,13 @@ __all__ = [
     "FibreSafety",
     "FibreTension",
     "Fittings",
+    "FixedEnd",
     "ForceAt",
     "ForceVariation",
     "FreeContraction",
     "Friction",
     "Gas",
     "Gent",
-    "Held",
     "Isobaric",
     "Isometric",
     "Isothermal",

@@ -5,19 +5,16 @@ from __future__ import annotations
 import re
 from typing import Any, ClassVar
 
+from mckibben.spec.constants import HEAT_RATIO, ROOM_TEMPERATURE
 from mckibben.spec.declared import Declared, Reads
 from mckibben.spec.errors import SpecError
 from mckibben.spec.fields import quantity, read_quantity, spec
 from mckibben.spec.plausible import CONTROLLED
 from mckibben.units import Number, show
 
-__all__ = ["AIRS", "ATMOSPHERE", "Isothermal", "Polytropic", "Supply", "Valve", "WallHeat", "temperature_field"]
+__all__ = ["AIRS", "Isothermal", "Polytropic", "Supply", "Valve", "WallHeat", "temperature_field"]
 
-ATMOSPHERE = 101325.0
-"""Standard atmosphere [Pa]."""
 ZERO_CELSIUS = 273.15
-REFERENCE_PRESSURE, REFERENCE_TEMPERATURE = 1e5, 293.15
-"""The reference state of ISO 8778, to which sonic conductances refer: 1 bar, 20 degC."""
 
 
 def _read_temperature(value: Any, field: str, declared: Declared) -> Number:
@@ -33,7 +30,7 @@ def _read_temperature(value: Any, field: str, declared: Declared) -> Number:
     return read_quantity(value, field, declared)
 
 
-def temperature_field(meaning: str, default: Any = 293.15) -> Any:
+def temperature_field(meaning: str, default: Any = ROOM_TEMPERATURE) -> Any:
     advice = 'write it like "20 degC" or "293 K"'
     return quantity("K", meaning=meaning, low=150.0, high=600.0, read=_read_temperature, advice=advice, default=default)
 
@@ -176,7 +173,7 @@ class Polytropic:
     """
 
     kind: ClassVar[str] = "polytropic"
-    n: Reads[float] = quantity("1", meaning="exponent", low=1.0, high=1.4, default=1.4)
+    n: Reads[float] = quantity("1", meaning="exponent", low=1.0, high=HEAT_RATIO, default=HEAT_RATIO)
 
 
 @spec("wall_heat")

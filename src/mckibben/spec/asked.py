@@ -4,10 +4,11 @@ from __future__ import annotations
 
 from typing import Any, ClassVar, TypeVar
 
+from mckibben.spec.constants import ATMOSPHERE
 from mckibben.spec.declared import Declared, Reads, declare
 from mckibben.spec.errors import SpecError
 from mckibben.spec.fields import quantity, spec
-from mckibben.spec.loading import ATMOSPHERE, HIGHEST
+from mckibben.spec.loading import HIGHEST
 from mckibben.spec.path import Path
 from mckibben.spec.plausible import CONTROLLED
 from mckibben.spec.wishes import Measure

@@ -3,19 +3,29 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from enum import StrEnum
 from typing import Any, ClassVar
 
 from mckibben.spec.declared import Declared, Reads, declare
 from mckibben.spec.errors import SpecError
 from mckibben.spec.fields import choice, quantity, spec
-from mckibben.spec.held import Seen
 from mckibben.spec.signal import Signal
 from mckibben.spec.signals import resolved
 from mckibben.units import show
 
-__all__ = ["CONTROLS", "PID", "UNITS", "Controller"]
+__all__ = ["CONTROLS", "PID", "UNITS", "Controlled", "Controller"]
 
-UNITS = {Seen.LENGTH: "m", Seen.ANGLE: "rad", Seen.FORCE: "N", Seen.PRESSURE: "Pa"}
+
+class Controlled(StrEnum):
+    """What a controller holds at its target."""
+
+    LENGTH = "length"
+    ANGLE = "angle"
+    FORCE = "force"
+    PRESSURE = "pressure"
+
+
+UNITS = {Controlled.LENGTH: "m", Controlled.ANGLE: "rad", Controlled.FORCE: "N", Controlled.PRESSURE: "Pa"}
 """SI units of what is held."""
 
 
@@ -94,7 +104,7 @@ class PID:
     """
 
     kind: ClassVar[str] = "pid"
-    of: Reads[Seen] = choice(Seen, meaning="what is held")
+    of: Reads[Controlled] = choice(Controlled, meaning="what is held")
     target: Any = declare(
         Declared(kind="signal", read=_read_target, meaning="its target: a value with a unit, or a signal")
     )

@@ -12,6 +12,7 @@ from typing import Any, ClassVar
 import attrs
 import numpy as np
 
+from mckibben.spec.constants import ATMOSPHERE
 from mckibben.spec.contraction import lengths, takes_contraction
 from mckibben.spec.declared import Declared, Reads, declare, evolved
 from mckibben.spec.errors import SpecError
@@ -33,8 +34,6 @@ __all__ = [
     "Test",
 ]
 
-ATMOSPHERE = 101325.0
-"""Standard atmosphere [Pa]: no gauge pressure is below minus this."""
 HIGHEST = 1e9
 """Highest gauge pressure taken [Pa]: 10,000 bar, ten times what any vessel of a workshop holds."""
 

@@ -6,6 +6,7 @@ from typing import Any, ClassVar
 
 import attrs
 
+from mckibben.spec.constants import GRAVITY
 from mckibben.spec.declared import Reads
 from mckibben.spec.errors import SpecError
 from mckibben.spec.fields import quantity, spec, switch
@@ -13,7 +14,7 @@ from mckibben.spec.plausible import CONTROLLED
 from mckibben.spec.signals import signal_field
 from mckibben.units import show
 
-__all__ = ["LOADS", "Held", "Load", "Pulley", "Viscosity"]
+__all__ = ["LOADS", "FixedEnd", "Load", "Pulley", "Viscosity"]
 
 
 def _length(meaning: str, **about: Any) -> Any:
@@ -35,8 +36,8 @@ def _stops(owner: str, low: float | None, high: float | None, unit: str) -> None
         raise SpecError(f"{owner}.stop_high", show(high, unit), said)
 
 
-@spec("held")
-class Held:
+@spec("fixed")
+class FixedEnd:
     """A muscle held at one length: nothing moves but air.
 
     Args:
@@ -45,11 +46,11 @@ class Held:
     Raises:
         SpecError: for a length out of range.
 
-    >>> mk.Held(length="100 mm").length
+    >>> mk.FixedEnd(length="100 mm").length
     0.1
     """
 
-    kind: ClassVar[str] = "held"
+    kind: ClassVar[str] = "fixed"
     length: Reads[float] = _length("distance between the fittings", default=attrs.NOTHING)
 
 
@@ -82,7 +83,7 @@ class Load:
     kind: ClassVar[str] = "load"
     mass: Reads[float] = quantity("kg", meaning="mass", low=0.0, low_open=True, high=1e6, size=(1e-9, 1e6))
     gravity: Reads[float] = quantity(
-        "m/s^2", meaning="acceleration along the muscle that lengthens it", low=-1e4, high=1e4, default=9.80665
+        "m/s^2", meaning="acceleration along the muscle that lengthens it", low=-1e4, high=1e4, default=GRAVITY
     )
     spring: Reads[float] = _positive("N/m", "stiffness of a spring beside the muscle", default=0.0)
     spring_at: Reads[float | None] = _length("length at which the spring has no force; that at the start")
@@ -177,5 +178,5 @@ class Viscosity:
         return 0.0 if self.stiffness is None else self.damping / self.stiffness
 
 
-LOADS: dict[str, type] = {cls.kind: cls for cls in (Held, Load, Pulley)}
+LOADS: dict[str, type] = {cls.kind: cls for cls in (FixedEnd, Load, Pulley)}
 """The loads by their words in files."""

@@ -4,13 +4,13 @@ from __future__ import annotations
 
 from typing import Any
 
-from mckibben.spec.air import AIRS, ATMOSPHERE, Isothermal, Polytropic, Supply, Valve, WallHeat, temperature_field
-from mckibben.spec.controls import CONTROLS, PID, Controller
+from mckibben.spec.air import AIRS, Isothermal, Polytropic, Supply, Valve, WallHeat, temperature_field
+from mckibben.spec.constants import ATMOSPHERE, HEAT_RATIO
+from mckibben.spec.controls import CONTROLS, PID, Controlled, Controller
 from mckibben.spec.declared import Declared, Reads, declare
 from mckibben.spec.errors import SpecError
 from mckibben.spec.fields import part, quantity, spec
-from mckibben.spec.held import Seen
-from mckibben.spec.loads import LOADS, Held, Load, Pulley, Viscosity
+from mckibben.spec.loads import LOADS, FixedEnd, Load, Pulley, Viscosity
 from mckibben.spec.muscle import Muscle
 from mckibben.spec.plausible import CONTROLLED
 from mckibben.spec.signal import Signal
@@ -54,7 +54,7 @@ class Rig:
 
     Args:
         muscle: the muscle; without friction, as its map has none.
-        load: `Held` (isometric), `Load` (a mass on a line) or `Pulley`.
+        load: `FixedEnd` (isometric), `Load` (a mass on a line) or `Pulley`.
         supply: where the air comes from.
         valve: through what it goes.
         command: of the valve, from -1 (vent) over 0 (closed) to 1 (fill): a number, a signal (`Jump`, `Ramp`, `Sine`,
@@ -122,7 +122,7 @@ class Rig:
                 raise SpecError(f"rig.{name}", allowed="is given without an antagonist", advice="give rig.antagonist")
         self.supplied  # noqa: B018  # absolute and gauge mixed up are found here
         for command in (self.command, self.antagonist_command):
-            if isinstance(command, PID) and command.of == Seen.ANGLE and not isinstance(self.load, Pulley):
+            if isinstance(command, PID) and command.of == Controlled.ANGLE and not isinstance(self.load, Pulley):
                 raise SpecError("pid.of", "angle", "is that of a pulley", "hold the length instead")
         for name in ("pressure", "antagonist_pressure"):
             start = getattr(self, name)
@@ -154,9 +154,9 @@ class Rig:
         return (self.pressure, second)[: len(self.muscles)]
 
     @property
-    def held(self) -> bool:
+    def fixed(self) -> bool:
         """Whether nothing moves but air."""
-        return isinstance(self.load, Held)
+        return isinstance(self.load, FixedEnd)
 
     @property
     def turns(self) -> bool:
@@ -171,4 +171,4 @@ class Rig:
     @property
     def exponent(self) -> float:
         """Exponent n of the balance of energy of the air."""
-        return self.air.n if isinstance(self.air, Polytropic) else 1.4 if isinstance(self.air, WallHeat) else 1.0
+        return self.air.n if isinstance(self.air, Polytropic) else HEAT_RATIO if isinstance(self.air, WallHeat) else 1.0

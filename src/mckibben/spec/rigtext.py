@@ -37,7 +37,7 @@ def rig_from_mapping(mapping: Mapping[str, Any]) -> Rig:
     if "muscle" not in mapping:
         raise SpecError("muscle", allowed="is missing", advice="write a [muscle] table")
     if "load" not in mapping:
-        raise SpecError("load", allowed="is missing", advice='write [load] with kind = "held", "load" or "pulley"')
+        raise SpecError("load", allowed="is missing", advice='write [load] with kind = "fixed", "load" or "pulley"')
     made: Rig = _build(Rig, mapping, "rig")
     return made
 

@@ -3,16 +3,23 @@
 from __future__ import annotations
 
 from bisect import bisect_right
+from enum import StrEnum
 from typing import Any, ClassVar
 
 from mckibben.spec.declared import Declared, Reads, declare
 from mckibben.spec.errors import SpecError
 from mckibben.spec.fields import choice, quantities, spec
-from mckibben.spec.held import Between
 from mckibben.spec.signal import TINY, Signal, read_values
 from mckibben.units import show
 
-__all__ = ["Series"]
+__all__ = ["Between", "Series"]
+
+
+class Between(StrEnum):
+    """What a series of values is between two times."""
+
+    LINE = "line"
+    HOLD = "hold"
 
 
 @spec("series")
