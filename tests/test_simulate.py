@@ -17,7 +17,8 @@ from hypothesis import strategies as st
 
 import mckibben as mk
 from mckibben.motion.flow import GAMMA, GAS, RHO, TEMPERATURE, mass_flow
-from mckibben.motion.plant import FIRST, PER, Mode, Plant
+from mckibben.motion.plant import Plant
+from mckibben.motion.regime import FIRST, PER, Mode, Regime
 from mckibben.motion.start import state_of
 from mckibben.spec.rigtext import rig_from_mapping, rig_to_mapping, rig_to_toml
 
@@ -282,23 +283,22 @@ def test_mirrored_muscles_stay_where_they_are() -> None:
 def test_the_equations_are_those_of_their_derivatives() -> None:
     """Rates of pressure and temperature against the balance of energy and the gas law, at states all over."""
     rig = attrs.evolve(PAIR, air=mk.WallHeat(conductance=0.3), viscosity=mk.Viscosity(damping=20.0, stiffness=300.0))
-    plant = Plant(rig, [Cylinder(k=100.0), Cylinder(n=1.3)])
-    plant.commands = [lambda t: 0.4, lambda t: -0.7]
-    plant.mode = Mode("free")
+    plant = Plant.of(rig, [Cylinder(k=100.0), Cylinder(n=1.3)])
+    regime = Regime(plant, Mode("free"), [lambda t: 0.4, lambda t: -0.7])
     y = np.array(state_of(plant, 0.1))
     y[[1, FIRST, FIRST + 1, FIRST + 3, FIRST + PER, FIRST + PER + 1]] = 2.0, 3.1e5, 320.0, 4.0, 2.2e5, 280.0
-    rates = np.array(plant.rates(0.0, y.tolist()).state)
+    rates = np.array(regime.rates(0.0, y.tolist()).state)
     step = 1e-6
 
     def gas(k: int, y: np.ndarray) -> tuple[float, float, float]:
-        seen = plant.rates(0.0, y.tolist()).muscles[k]
+        seen = regime.rates(0.0, y.tolist()).muscles[k]
         p = float(y[FIRST + PER * k])
         return seen.mass, p * seen.volume / (GAMMA - 1.0), seen.volume
 
     for k in range(2):
         later, sooner = (np.array(gas(k, y + sign * step * rates)) for sign in (1.0, -1.0))
         mass, internal, volume = (later - sooner) / (2.0 * step)
-        seen = plant.rates(0.0, y.tolist()).muscles[k]
+        seen = regime.rates(0.0, y.tolist()).muscles[k]
         part = rates[FIRST + PER * k : FIRST + PER * (k + 1)]
         assert mass == pytest.approx(seen.inflow - seen.outflow, rel=1e-5)
         wall = 0.3 * (293.15 - y[FIRST + PER * k + 1])

@@ -11,7 +11,9 @@ import numpy as np
 
 from mckibben.motion.commands import Commands
 from mckibben.motion.modes import Ended, after, margins
-from mckibben.motion.plant import Plant, Rates
+from mckibben.motion.plant import Plant
+from mckibben.motion.regime import Rates, Regime
+from mckibben.motion.start import Begun
 from mckibben.units import show
 
 __all__ = ["METHODS", "Driven", "drive"]
@@ -38,19 +40,19 @@ class Driven:
 
 
 def drive(
-    plant: Plant,
-    y: list[float],
+    begun: Begun,
     commands: Commands,
     times: np.ndarray,
     method: str,
     tolerance: float,
     watch: Callable[[int, int], None],
 ) -> Driven:
-    """A rig from its state at the first of the times to the last of them, looked at at each."""
+    """A rig from its start at the first of the times to the last of them, looked at at each."""
     import scipy.integrate
 
     solver_class = getattr(scipy.integrate, method)
     done, asked = Driven(), times.tolist()
+    plant, y, regime = begun.plant, begun.state, Regime.closed(begun.plant, begun.mode)
     t, until, next_at = asked[0], asked[-1], 0
     small = _scales(plant) * tolerance
     most = min(0.05, max(1e-3, until / 50.0))
@@ -58,18 +60,17 @@ def drive(
 
     def rates(t: float, y: np.ndarray) -> list[float]:
         done.looked += 1
-        return plant.rates(t, y.tolist()).state
+        return regime.rates(t, y.tolist()).state
 
     def keep(t: float, y: list[float]) -> None:
         done.times.append(t)
         done.states.append(y)
-        done.seen.append(plant.rates(t, y))
-        done.modes.append(plant.mode.moves)
+        done.seen.append(regime.rates(t, y))
+        done.modes.append(regime.mode.moves)
 
     for end in commands.breaks:
-        commands.sample(t, lambda: _measured(plant, t, y))  # noqa: B023  # called at once
-        plant.commands = commands.between(t, end)
-        _wake(plant, t, y, done)
+        commands.sample(t, lambda: _measured(regime, t, y))  # noqa: B023  # called at once
+        regime, y = _woken(attrs.evolve(regime, commands=commands.between(t, end)), t, y, done)
         if next_at == 0:
             keep(t, y)
             next_at = 1
@@ -84,10 +85,10 @@ def drive(
                     return done
                 last, now, reached = float(solver.t_old), solver.y.tolist(), float(solver.t)
                 smooth = None
-                ended = _ended(plant, now, reached)
+                ended = _ended(regime, now, reached)
                 if ended is not None:
                     smooth = solver.dense_output()
-                    reached, ended = _when(plant, smooth, ended, last, reached)
+                    reached, ended = _when(regime, smooth, ended, last, reached)
                     now = smooth(reached).tolist()
                 while next_at < len(asked) and asked[next_at] <= reached + 1e-12 * until:
                     smooth = smooth or solver.dense_output()
@@ -95,7 +96,8 @@ def drive(
                     next_at += 1
                 t, y = reached, now
             if ended is not None:
-                plant.mode, told = after(plant, y, ended, plant.rates(t, y))
+                mode, y, told = after(regime, y, ended, regime.rates(t, y))
+                regime = attrs.evolve(regime, mode=mode)
                 done.events.append((t, told))
                 changes = [one for one in changes if t - one < SOON * until] + [t]
                 if len(changes) > CHATTER:
@@ -112,9 +114,9 @@ def _scales(plant: Plant) -> np.ndarray:
     return np.array([place, 10.0 * place, 1.0, 1.0] + muscle * plant.n)
 
 
-def _ended(plant: Plant, y: list[float], t: float) -> Ended | None:
+def _ended(regime: Regime, y: list[float], t: float) -> Ended | None:
     """What has ended the mode at a time, if anything has."""
-    found = margins(plant, t, y) if _changes(plant) else {}
+    found = margins(regime, t, y) if _changes(regime.plant) else {}
     return next((one for one, margin in found.items() if margin < 0.0), None)
 
 
@@ -123,16 +125,16 @@ def _changes(plant: Plant) -> bool:
     return plant.slackens or plant.friction > 0.0 or plant.stops != (None, None)
 
 
-def _when(plant: Plant, smooth: Any, ended: Ended, last: float, reached: float) -> tuple[float, Ended]:
+def _when(regime: Regime, smooth: Any, ended: Ended, last: float, reached: float) -> tuple[float, Ended]:
     """When a mode ended within a step, and by what: the first of those that ended in it."""
     from scipy.optimize import brentq
 
     def left(ended: Ended, t: float) -> float:
-        margin = margins(plant, t, smooth(t).tolist()).get(ended, math.inf)
+        margin = margins(regime, t, smooth(t).tolist()).get(ended, math.inf)
         return margin if math.isfinite(margin) else 1.0
 
     times = {}
-    over = [one for one, margin in margins(plant, reached, smooth(reached).tolist()).items() if margin < 0.0]
+    over = [one for one, margin in margins(regime, reached, smooth(reached).tolist()).items() if margin < 0.0]
     for one in over or [ended]:
         if left(one, reached) >= 0.0:
             times[one] = reached
@@ -144,24 +146,26 @@ def _when(plant: Plant, smooth: Any, ended: Ended, last: float, reached: float) 
     return times[first], first
 
 
-def _wake(plant: Plant, t: float, y: list[float], done: Driven) -> None:
+def _woken(regime: Regime, t: float, y: list[float], done: Driven) -> tuple[Regime, list[float]]:
     """After a jump of a command or a load, friction or a stop may hold no longer."""
-    if plant.mode.moves == "free" or plant.rig.fixed:
-        return
-    found = plant.rates(t, y)
-    for ended, margin in margins(plant, t, y).items():
+    if regime.mode.moves == "free" or regime.plant.rig.fixed:
+        return regime, y
+    found = regime.rates(t, y)
+    for ended, margin in margins(regime, t, y).items():
         if margin < 0.0 and ended[0] in ("slip", "leave"):
-            plant.mode, told = after(plant, y, ended, found)
+            mode, y, told = after(regime, y, ended, found)
+            regime = attrs.evolve(regime, mode=mode)
             done.events.append((t, told))
+    return regime, y
 
 
-def _measured(plant: Plant, t: float, y: list[float]) -> Mapping[str, float]:
+def _measured(regime: Regime, t: float, y: list[float]) -> Mapping[str, float]:
     """What a controller sees."""
     found: dict[str, float] = {}
-    for k, seen in enumerate(plant.rates(t, y).muscles):
+    for k, seen in enumerate(regime.rates(t, y).muscles):
         before = "antagonist_" if k else ""
         for name in ("length", "speed", "force", "pressure"):
             found[before + name] = getattr(seen, name)
-    if plant.rig.turns:
+    if regime.plant.rig.turns:
         found |= {"angle": y[0], "angular_speed": y[1]}
     return found

@@ -5,10 +5,12 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import Any
 
+import attrs
 import numpy as np
 
 from mckibben.motion.maps import maps_of
-from mckibben.motion.plant import FIRST, PER, Mode, Plant
+from mckibben.motion.plant import Plant
+from mckibben.motion.regime import FIRST, PER, Regime
 from mckibben.motion.start import at_rest
 from mckibben.results.answers import Bode
 from mckibben.spec.errors import SpecError, nearest
@@ -69,19 +71,18 @@ def bode(rig: Rig, *, frequency: Any, of: str = "", by: str = "push", chart: Any
     if by not in INPUTS:
         raise SpecError("bode.by", by, "is unknown", nearest(by, INPUTS))
     hertz = _frequencies(frequency)
-    plant = Plant(rig, maps_of(rig, chart))
-    y = np.array(at_rest(plant))
-    plant.mode = Mode()
-    plant.slackens = False
-    push = plant.rates(0.0, y.tolist()).push
+    begun = at_rest(Plant.of(rig, maps_of(rig, chart)))
+    plant, y = attrs.evolve(begun.plant, slackens=False), np.array(begun.state)
+    regime = Regime.closed(plant)
+    push = regime.rates(0.0, begun.state).push
     if abs(push) > AT_REST * max(abs(plant.weight), 1.0):
         unit = "N m" if rig.turns else "N"
         said = f"is no equilibrium: it is held there against {push:.3g} {unit}, by a stop, friction or its start"
         raise SpecError("bode.rig", allowed=said, advice="leave out the start, or give another pressure")
     rows = _moving(plant)
-    A = _jacobian(plant, y, rows)
-    B = _by_push(plant, rows) if by == "push" else _by_command(plant, y, rows)
-    C = _answer(plant, y, rows, name)
+    A = _jacobian(regime, y, rows)
+    B = _by_push(plant, rows) if by == "push" else _by_command(regime, y, rows)
+    C = _answer(regime, y, rows, name)
     eye = np.eye(len(rows))
     response = np.array([C @ np.linalg.solve(2j * np.pi * f * eye - A, B) for f in hertz])
     names = ["angle" if rig.turns else "length", "speed"]
@@ -121,16 +122,16 @@ def _sizes(rows: Sequence[int]) -> list[float]:
     return [1e-2 if row < FIRST else sizes[(row - FIRST) % PER] for row in rows]
 
 
-def _rates(plant: Plant, y: np.ndarray) -> np.ndarray:
-    return np.array(plant.rates(0.0, y.tolist()).state)
+def _rates(regime: Regime, y: np.ndarray) -> np.ndarray:
+    return np.array(regime.rates(0.0, y.tolist()).state)
 
 
-def _jacobian(plant: Plant, y: np.ndarray, rows: list[int]) -> np.ndarray:
+def _jacobian(regime: Regime, y: np.ndarray, rows: list[int]) -> np.ndarray:
     columns = []
     for row, size in zip(rows, _sizes(rows), strict=True):
         step = np.zeros(len(y))
         step[row] = STEP * size
-        columns.append((_rates(plant, y + step) - _rates(plant, y - step))[rows] / (2.0 * STEP * size))
+        columns.append((_rates(regime, y + step) - _rates(regime, y - step))[rows] / (2.0 * STEP * size))
     return np.array(columns).T
 
 
@@ -140,31 +141,29 @@ def _by_push(plant: Plant, rows: list[int]) -> np.ndarray:
     return found
 
 
-def _by_command(plant: Plant, y: np.ndarray, rows: list[int]) -> np.ndarray:
+def _by_command(regime: Regime, y: np.ndarray, rows: list[int]) -> np.ndarray:
     """The mean of the slopes to both sides; a second muscle gets the negative of the command."""
 
     def at(u: float) -> np.ndarray:
-        plant.commands = [lambda t: u, lambda t: -u][: plant.n]
-        return _rates(plant, y)
+        commands = [lambda t: u, lambda t: -u][: regime.plant.n]
+        return _rates(attrs.evolve(regime, commands=commands), y)
 
-    slope = (at(SLIGHT) - at(-SLIGHT))[rows] / (2.0 * SLIGHT)
-    plant.commands = [lambda t: 0.0] * plant.n
-    return slope
+    return np.asarray((at(SLIGHT) - at(-SLIGHT))[rows] / (2.0 * SLIGHT))
 
 
-def _answer(plant: Plant, y: np.ndarray, rows: list[int], name: str) -> np.ndarray:
+def _answer(regime: Regime, y: np.ndarray, rows: list[int], name: str) -> np.ndarray:
     """The answer as a row over the moving numbers."""
     found = np.zeros(len(rows))
     if name == "angle":
         found[0] = 1.0
     elif name in ("length", "speed"):
-        found[0 if name == "length" else 1] = plant.ratios[0]
+        found[0 if name == "length" else 1] = regime.plant.ratios[0]
     elif name == "pressure":
         found[2] = 1.0
     else:
         for k, (row, size) in enumerate(zip(rows, _sizes(rows), strict=True)):
             step = np.zeros(len(y))
             step[row] = STEP * size
-            up, down = (plant.rates(0.0, (y + sign * step).tolist()).muscles[0].force for sign in (1.0, -1.0))
+            up, down = (regime.rates(0.0, (y + sign * step).tolist()).muscles[0].force for sign in (1.0, -1.0))
             found[k] = (up - down) / (2.0 * STEP * size)
     return found

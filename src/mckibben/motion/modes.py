@@ -4,12 +4,14 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
+from typing import NamedTuple
 
 import attrs
 
-from mckibben.motion.plant import FIRST, PER, Mode, Plant, Rates
+from mckibben.motion.plant import Plant
+from mckibben.motion.regime import FIRST, PER, Mode, Rates, Regime
 
-__all__ = ["Ended", "after", "begun", "margins"]
+__all__ = ["After", "Ended", "after", "begun", "margins"]
 
 SPEED = 1e-9
 """Speed [m/s or rad/s] below which friction may hold."""
@@ -22,11 +24,19 @@ Ended = tuple[str, int]
 """What ended a mode, and of which muscle."""
 
 
-def margins(plant: Plant, t: float, y: Sequence[float]) -> dict[Ended, float]:
-    """How far the present mode is from its end, by each way to end it: below 0 it has ended."""
-    mode, (low, high) = plant.mode, plant.stops
-    found: dict[Ended, float] = {}
-    rates = plant.rates(t, y) if plant.slackens or mode.moves != "free" else None  # seldom needed, and dear
+class After(NamedTuple):
+    """What follows a mode that has ended."""
+
+    mode: Mode
+    state: list[float]
+    told: str
+
+
+def margins(regime: Regime, t: float, y: Sequence[float]) -> dict[Ended, float]:
+    """How far the mode is from its end, by each way to end it: below 0 it has ended."""
+    plant, mode = regime.plant, regime.mode
+    (low, high), found = plant.stops, dict[Ended, float]()
+    rates = regime.rates(t, y) if plant.slackens or mode.moves != "free" else None  # seldom needed, and dear
     if mode.moves == "free":
         if low is not None:
             found["low", 0] = y[0] - low if y[1] < 0.0 else math.inf
@@ -49,40 +59,40 @@ def margins(plant: Plant, t: float, y: Sequence[float]) -> dict[Ended, float]:
     return found
 
 
-def after(plant: Plant, y: list[float], ended: Ended, rates: Rates) -> tuple[Mode, str]:
-    """The mode that follows, and what happened in words. The state is put on the stop, or to rest, in place."""
-    mode, (what, k) = plant.mode, ended
-    if what in ("low", "high"):
-        y[2] += 0.5 * plant.mass * y[1] ** 2
-        stop = plant.stops[0] if what == "low" else plant.stops[1]
-        assert stop is not None
-        y[0], y[1] = stop, 0.0
-        return attrs.evolve(mode, moves=what, sliding=0.0), f"reached the {what} end stop"
-    if what == "turn":
+def after(regime: Regime, y: Sequence[float], ended: Ended, rates: Rates) -> After:
+    """The mode that follows, the state in it, put on the stop or to rest, and what happened in words."""
+    plant, mode, (what, k), y = regime.plant, regime.mode, ended, list(y)
+    if what in ("low", "high", "turn"):
         y[2] += 0.5 * plant.mass * y[1] ** 2
         y[1] = 0.0
-        if abs(rates.push) <= plant.friction:
-            return attrs.evolve(mode, moves="stuck", sliding=0.0), "came to rest: friction holds"
-        return attrs.evolve(mode, sliding=math.copysign(1.0, rates.push)), "turned round"
+    if what in ("low", "high"):
+        stop = plant.stops[0] if what == "low" else plant.stops[1]
+        assert stop is not None
+        y[0] = stop
+        return After(attrs.evolve(mode, moves=what, sliding=0.0), y, f"reached the {what} end stop")
+    if what == "turn" and abs(rates.push) <= plant.friction:
+        return After(attrs.evolve(mode, moves="stuck", sliding=0.0), y, "came to rest: friction holds")
+    sliding = math.copysign(1.0, rates.push)
+    if what == "turn":
+        return After(attrs.evolve(mode, sliding=sliding), y, "turned round")
     if what in ("slip", "leave"):
         said = "friction gave way" if what == "slip" else f"left the {mode.moves} end stop"
-        return attrs.evolve(mode, moves="free", sliding=math.copysign(1.0, rates.push)), said
+        return After(attrs.evolve(mode, moves="free", sliding=sliding), y, said)
     name = "the muscle" if plant.n == 1 else ("the first muscle", "the antagonist")[k]
     slack = tuple(what == "slack" if j == k else one for j, one in enumerate(mode.slack))
     if what == "slack":
         y[FIRST + PER * k + 2] = plant.offsets[k] + plant.ratios[k] * y[0]
-    return attrs.evolve(mode, slack=slack), f"{name} went slack" if what == "slack" else f"{name} pulls again"
+    return After(attrs.evolve(mode, slack=slack), y, f"{name} went slack" if what == "slack" else f"{name} pulls again")
 
 
-def begun(plant: Plant, t: float, y: list[float]) -> Mode:
+def begun(plant: Plant, y: Sequence[float], slack: tuple[bool, ...]) -> Mode:
     """The mode in which a rig begins, at rest."""
-    low, high = plant.stops
-    plant.mode = Mode("stuck", 0.0, plant.mode.slack)
-    push = plant.rates(t, y).push
+    (low, high), stuck = plant.stops, Mode("stuck", 0.0, slack)
+    push = Regime.closed(plant, stuck).rates(0.0, y).push
     if low is not None and y[0] <= low and push <= plant.friction:
-        return attrs.evolve(plant.mode, moves="low")
+        return attrs.evolve(stuck, moves="low")
     if high is not None and y[0] >= high and push >= -plant.friction:
-        return attrs.evolve(plant.mode, moves="high")
+        return attrs.evolve(stuck, moves="high")
     if plant.friction and abs(push) <= plant.friction:
-        return plant.mode
-    return attrs.evolve(plant.mode, moves="free", sliding=math.copysign(1.0, push))
+        return stuck
+    return attrs.evolve(stuck, moves="free", sliding=math.copysign(1.0, push))

@@ -13,7 +13,8 @@ import numpy as np
 from mckibben.motion.drive import Driven
 from mckibben.motion.flow import GAMMA, NORMAL
 from mckibben.motion.mapped import Mapped
-from mckibben.motion.plant import FIRST, PER, Plant, Seen
+from mckibben.motion.plant import Plant
+from mckibben.motion.regime import FIRST, PER, Seen
 from mckibben.results.motion import OF_MUSCLES, OF_RIG, TURNING, Motion
 from mckibben.spec.loads import FixedEnd, Load
 from mckibben.spec.rigtext import rig_to_toml

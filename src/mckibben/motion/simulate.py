@@ -183,12 +183,11 @@ def _travels(rig: Rig) -> bool:
 def _one(
     rig: Rig, charts: Sequence[Any], end: float, points: int, tolerance: float, method: str, watch: Watch | None
 ) -> Motion:
-    plant = Plant(rig, charts)
-    y = at_rest(plant)
+    begun = at_rest(Plant.of(rig, charts))
     commands = Commands(rig, end)
     times = np.linspace(0.0, end, points)
-    done = drive(plant, y, commands, times, method, tolerance, watch or (lambda done, total: None))
-    return recorded(plant, done, method, tolerance)
+    done = drive(begun, commands, times, method, tolerance, watch or (lambda done, total: None))
+    return recorded(begun.plant, done, method, tolerance)
 
 
 def _check(rig: Any) -> None:

@@ -10,7 +10,8 @@ import numpy as np
 from mckibben.motion.commands import Commands
 from mckibben.motion.drive import drive
 from mckibben.motion.maps import maps_of
-from mckibben.motion.plant import FIRST, Plant
+from mckibben.motion.plant import Plant
+from mckibben.motion.regime import FIRST, Regime
 from mckibben.motion.simulate import read_time
 from mckibben.motion.start import at_rest
 from mckibben.results.answers import Sized
@@ -107,9 +108,8 @@ def _goal(rig: Rig, pressure: Any, vent: bool) -> float:
 
 
 def _pressure_at(rig: Rig, charts: tuple[Any, ...], end: float) -> float:
-    plant = Plant(rig, charts)
-    y = at_rest(plant)
-    done = drive(plant, y, Commands(rig, end), np.array([0.0, end]), "LSODA", TOLERANCE, lambda done, total: None)
+    begun = at_rest(Plant.of(rig, charts))
+    done = drive(begun, Commands(rig, end), np.array([0.0, end]), "LSODA", TOLERANCE, lambda done, total: None)
     if done.reason:
         raise SpecError("size_valve.rig", allowed=f"cannot be simulated: {done.reason}")
     return done.states[-1][FIRST] - rig.atmosphere
@@ -117,8 +117,7 @@ def _pressure_at(rig: Rig, charts: tuple[Any, ...], end: float) -> float:
 
 def _guess(rig: Rig, charts: tuple[Any, ...], goal: float, room: float, vent: bool) -> float:
     """The conductance of choked flow into the volume of the start."""
-    plant = Plant(rig, charts)
-    y = at_rest(plant)
-    seen = plant.rates(0.0, y).muscles[0]
+    begun = at_rest(Plant.of(rig, charts))
+    seen = Regime.closed(begun.plant, begun.mode).rates(0.0, begun.state).muscles[0]
     before = (rig.pressure if vent else rig.supplied) + (rig.atmosphere if vent else 0.0)
     return abs(goal - rig.pressure) * seen.volume / (before * 1e5 * room)

@@ -2,16 +2,29 @@
 
 from __future__ import annotations
 
+from typing import NamedTuple
+
+import attrs
+
 from mckibben.motion.mapped import ends_of
 from mckibben.motion.modes import begun
-from mckibben.motion.plant import FIRST, PER, Mode, Plant
+from mckibben.motion.plant import Plant
+from mckibben.motion.regime import FIRST, PER, Mode, Regime
 from mckibben.spec.errors import SpecError
 from mckibben.units import show
 
-__all__ = ["at_rest", "state_of"]
+__all__ = ["Begun", "at_rest", "state_of"]
 
 LOOKED_AT = 33
 """Places between which an equilibrium is looked for."""
+
+
+class Begun(NamedTuple):
+    """A rig at the start: the springs of some are at rest where it begins."""
+
+    plant: Plant
+    state: list[float]
+    mode: Mode
 
 
 def state_of(plant: Plant, x: float) -> list[float]:
@@ -27,8 +40,8 @@ def state_of(plant: Plant, x: float) -> list[float]:
     return y
 
 
-def at_rest(plant: Plant) -> list[float]:
-    """The state at the start. SpecError where it is outside of the map, or where there is no equilibrium."""
+def at_rest(plant: Plant) -> Begun:
+    """The start. SpecError where it is outside of the map, or where there is no equilibrium."""
     rig = plant.rig
     load = rig.load
     given = load.length if rig.fixed else load.start
@@ -47,12 +60,10 @@ def at_rest(plant: Plant) -> list[float]:
         x = float(given)
     else:
         x = _equilibrium(plant, low, high, name, unit)
-    if isinstance(plant.rest, float) and rig.mass and not rig.turns and load.spring_at is None:
-        plant.rest = x
-    y = state_of(plant, x)
-    _slacken(plant, y)
-    plant.mode = begun(plant, 0.0, y)
-    return y
+    if rig.mass and not rig.turns and load.spring_at is None:
+        plant = attrs.evolve(plant, rest=x)
+    y, slack = _slackened(plant, state_of(plant, x))
+    return Begun(plant, y, begun(plant, y, slack))
 
 
 def _room(plant: Plant) -> tuple[float, float]:
@@ -76,14 +87,11 @@ def _equilibrium(plant: Plant, low: float, high: float, name: str, unit: str) ->
     """The place at which nothing pushes, or the stop against which it does."""
     from scipy.optimize import brentq
 
-    plant.mode = Mode("stuck", 0.0, (False, False))
-    wanders = plant.rest if not plant.rig.turns and plant.rig.load.spring_at is None else None
+    wanders = not plant.rig.turns and plant.rig.load.spring_at is None
 
     def push(x: float) -> float:
-        if wanders is not None:
-            plant.rest = x  # without a place of its own the spring has no force at the start
-        y = state_of(plant, x)
-        found = plant.rates(0.0, y)
+        there = attrs.evolve(plant, rest=x) if wanders else plant  # a spring without a place of its own has no force
+        found = Regime.closed(there, Mode("stuck")).rates(0.0, state_of(plant, x))
         if not plant.slackens:
             return found.push
         return found.push - sum(-plant.ratios[k] * min(seen.force, 0.0) for k, seen in enumerate(found.muscles))
@@ -105,15 +113,15 @@ def _equilibrium(plant: Plant, low: float, high: float, name: str, unit: str) ->
     raise SpecError(name, allowed=said, advice="give a start, another load, a pressure at the start, or an end stop")
 
 
-def _slacken(plant: Plant, y: list[float]) -> None:
-    """Muscles that would push at the start are slack where their cables allow it."""
+def _slackened(plant: Plant, y: list[float]) -> tuple[list[float], tuple[bool, ...]]:
+    """Muscles that would push at the start are slack where their cables allow it: the state, and which are."""
+    slack = [False, False]
     if not plant.slackens:
-        return
+        return y, tuple(slack)
     from scipy.optimize import brentq
 
-    seen = plant.rates(0.0, y).muscles
-    slack = [False, False]
-    for k, one in enumerate(seen):
+    y = list(y)
+    for k, one in enumerate(Regime.closed(plant, Mode("stuck")).rates(0.0, y).muscles):
         if one.force >= 0.0:
             continue
         P = plant.rig.pressures[k]
@@ -123,4 +131,4 @@ def _slacken(plant: Plant, y: list[float]) -> None:
                 brentq(lambda h, at=at, P=P: at(h, P).force, one.length, ends.high, xtol=1e-14)
             )
             slack[k] = True
-    plant.mode = Mode(plant.mode.moves, 0.0, (slack[0], slack[1]))
+    return y, tuple(slack)
