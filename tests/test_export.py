@@ -261,6 +261,27 @@ def test_a_lift_by_a_valve_does_not_depend_on_the_steps(running: Any) -> None:
 
 
 @needs_compiler
+def test_a_lift_is_that_of_simulate(chart: mk.Chart, running: Any) -> None:
+    """Two programs: C with its own steps, and SciPy's solver on the equations of motion."""
+    air = {"supply": 2e5, "conductance": 1e-9, "tube": 5e-6}
+    one, seen = running("lift", pressure_start=0.2e5, damping=30.0, **air), []
+    one.set(command=1.0)
+    for _ in range(30):
+        one.step(0.01)
+        seen.append([one.get("length"), one.get("pressure"), one.get("air_mass")])
+    rig = mk.Rig(
+        chart.muscle, mk.Load(mass="2 kg", damping="30 N s/m"), supply=mk.Supply(gauge="2 bar"), tube="5 mL",
+        valve=mk.Valve(C=1e-9, b=0.3), pressure="0.2 bar", command=mk.Constant(1.0), air=mk.Isothermal(),
+    )  # fmt: skip
+    motion = mk.simulate(rig, until="0.3 s", chart=chart, points=31, tolerance=1e-9)
+    lifted = motion.length[0] - motion.length[-1]
+    assert lifted > 5e-3
+    np.testing.assert_allclose([row[0] for row in seen], motion.length[1:], rtol=0.0, atol=2e-7 * lifted)
+    np.testing.assert_allclose([row[1] for row in seen], motion.pressure[1:], rtol=2e-7)
+    np.testing.assert_allclose([row[2] for row in seen], motion.data["mass"].values[1:], rtol=2e-7)
+
+
+@needs_compiler
 def test_an_fmu_goes_back_to_a_kept_state(running: Any) -> None:
     one = running("lift", pressure_start=0.2e5)
     one.set(command=1.0)
