@@ -18,6 +18,7 @@ from mckibben.model.parameters import Parameters, numbers
 from mckibben.solver.bench import jumps
 from mckibben.spec import (
     Along,
+    Bellows,
     BlockedForce,
     Braid,
     CustomLaw,
@@ -189,7 +190,7 @@ def _valid(muscle: Muscle) -> Any:
         good = good & certainly_held(braid, muscle.end_radii)
     if muscle.chamber is not None:
         good = good & certainly_fits(braid, muscle.chamber)
-    if muscle.chamber is not None and not isinstance(muscle.chamber.law, CustomLaw):
+    if muscle.chamber is not None and not isinstance(muscle.chamber.law, (CustomLaw, Bellows)):
         good = good & (np.asarray(muscle.chamber.law.shear_modulus) > 0.0)
     return good
 
