@@ -177,5 +177,5 @@ def test_a_dead_length_beside_a_compliance() -> None:
 
 def test_the_papers_mesh_has_rigid_fittings() -> None:
     test = mk.Isometric(length="122 mm", pressure="1 bar")
-    with pytest.raises(mk.SpecError, match="in fittings that do not give way"):
+    with pytest.raises(mk.SpecError, match="in rigid fittings of its own radius"):
         mk.run(giving(), test, discretisation="paper")

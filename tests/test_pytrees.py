@@ -25,6 +25,7 @@ LAWS = (
     mk.ArrudaBoyce(mu=1e4, lambda_m=4.0),
     mk.Rubber(E=1e6),
     mk.Rubber(shore=30.0),
+    mk.Bellows(axial_stiffness=50.0),
     mk.CustomLaw(function=max, constants={"b": 0.1, "mu": 1e4}),
 )
 OBJECTS = (

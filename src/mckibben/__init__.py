@@ -8,8 +8,9 @@ from mckibben.shown import drawn_by
 
 _PUBLIC = {
     "mckibben.spec": (
-        "ArrudaBoyce", "AxialLaw", "Braid", "Chamber", "CustomLaw", "Ends", "Fibre", "Fittings", "Friction", "Gent",
-        "Joint", "MooneyRivlin", "Muscle", "NeoHookean", "Ogden", "Rubber", "Yeoh", "BlockedForce", "FreeContraction",
+        "ArrudaBoyce", "AxialLaw", "Bellows", "Braid", "Chamber", "CustomLaw", "Ends", "Fibre", "Fittings", "Friction",
+        "Gent", "Joint", "MooneyRivlin", "Muscle", "NeoHookean", "Ogden", "Rubber", "Yeoh", "BlockedForce",
+        "FreeContraction",
         "Isobaric", "Isometric", "Isotonic", "Protocol", "Step", "Stiffening",
         "SpecError", "Constant", "Controller", "FixedEnd", "Isothermal", "Jump", "Load", "PID", "PWM", "Polytropic",
         "Pulley", "Ramp", "Rig", "Series", "Sine", "Supply", "Valve", "Viscosity", "WallHeat",

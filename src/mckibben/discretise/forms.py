@@ -11,8 +11,8 @@ from itertools import chain
 import jax.numpy as jnp
 
 from mckibben.discretise.fields import Form, Integral, Variables
-from mckibben.model.angle import cos, radians, sin, tan
-from mckibben.model.kinematics import angle_rate, stretch_rate
+from mckibben.model.angle import cos, sin, tan
+from mckibben.model.kinematics import angle_rate, end_angle, stretch_rate
 from mckibben.model.parameters import Number, Parameters
 from mckibben.model.point import Point
 
@@ -47,7 +47,7 @@ def line_form(stretch: bool, roll: bool, give: bool, free: bool) -> Form:
         return stretch_rate(Point(at["theta"], None, None, excess=at["excess"]), p)
 
     by = [names.index(name) for name in ("psi", "excess") if name in names]
-    integrals = [Integral(lambda p: radians(p.theta0), turning, tuple(by))]
+    integrals = [Integral(lambda p: end_angle(p, 0), turning, tuple(by))]
     if stretch:
         integrals.append(Integral(lambda p: 0.0 * p.R0, stretching, (0, names.index("excess"))))
     orders, angles = tuple(ORDERS[name] for name in fields), tuple(name in ANGLES for name in names)
@@ -55,7 +55,9 @@ def line_form(stretch: bool, roll: bool, give: bool, free: bool) -> Form:
 
 
 def _stretch(log: Number, turn: Number | None, p: Parameters) -> Number:
-    """lambda at a point. Where r = R0 is held at the fitting and theta turns there, lambda cos(theta) = cos(theta0)."""
+    """lambda at a point. Where the radius is held at the fitting and theta turns there from theta_1, lambda cos(theta)
+    = cos(theta_1)."""
     if turn is None:
         return jnp.exp(log)
-    return jnp.exp(log) / (cos(turn) - tan(p.theta0) * sin(turn))
+    held = p.theta0 if p.end_radii is None else end_angle(p, 0)
+    return jnp.exp(log) / (cos(turn) - tan(held) * sin(turn))

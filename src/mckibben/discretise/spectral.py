@@ -41,9 +41,14 @@ class Line:
 
     @classmethod
     def of(cls, muscle: Muscle, size: int) -> "Line":
-        """The space of symmetric shapes of a muscle: what its ends hold, and what its fibres may do."""
-        roll, give = muscle.braid.joint == Joint.PIN, muscle.gives_way
-        return cls(size, str(muscle.ends), stretch=muscle.braid.fibre.stretch, roll=roll, give=give)
+        """The space of shapes of a muscle: what its ends hold, and what its fibres may do.
+
+        Those of symmetric shapes, on half the length; where both ends have radii of their own of all shapes, with as
+        many modes for each half.
+        """
+        roll, give, whole = muscle.braid.joint == Joint.PIN, muscle.gives_way, len(muscle.end_radii or ()) == 2
+        count, modes = (2 * size, "all") if whole else (size, "odd")
+        return cls(count, str(muscle.ends), modes, muscle.braid.fibre.stretch, roll, give)  # type: ignore[arg-type]
 
     @property
     def form(self) -> Form:
@@ -87,7 +92,7 @@ class Line:
 
     @property
     def closes(self) -> bool:
-        """Whether equal end radii are a condition; odd slopes have them anyway, free ends do not need them."""
+        """Whether the end radii are a condition; odd slopes have equal ones anyway, free ends do not need them."""
         return self.modes == "all" and self.ends != "free"
 
     def even(self) -> "Line":

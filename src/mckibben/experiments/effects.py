@@ -50,6 +50,7 @@ EFFECTS = (
         'friction = { coefficient = 0.3, arm = "0.1 mm" }', assumed=True,
     ),
     Effect("ends that hold the radius", "ends", "clamped", "free", 'ends = "clamped"'),
+    Effect("fittings of another radius", "end_radii", None, None, "end_radii, as given"),
 )  # fmt: skip
 """What can be switched. Compliance and friction are those of measured Festo muscles (theory page): put in your own."""
 
@@ -58,9 +59,9 @@ def effects(muscle: Muscle, *, length: Any = None, contraction: Any = None, pres
     """The size of each effect for a muscle at a length and pressure: solved with it and without, nothing guessed.
 
     Stretch and roll of the fibres, where the wall lies and how thick it is, a gap between tube and braid, fittings that
-    give way, friction, and the ends. What a muscle already has is switched off for the comparison; the rest is switched
-    on, one by one. Friction has no one state: what is told is half of what lies between the forces as the muscle
-    lengthens and as it shortens.
+    give way or have a radius of their own, friction, and the ends. What a muscle already has is switched off for the
+    comparison; the rest is switched on, one by one. Friction has no one state: what is told is half of what lies
+    between the forces as the muscle lengthens and as it shortens.
 
     Args:
         muscle: the specification.
@@ -96,10 +97,11 @@ def effects(muscle: Muscle, *, length: Any = None, contraction: Any = None, pres
 def _own(effects: Iterable[Effect], muscle: Muscle) -> list[Effect]:
     """The effects, with the muscle's own friction where it has one, and on its own dead length.
 
-    A gap is one of a chamber inside alone.
+    A gap is one of a chamber inside alone, and of another radius of the fittings none is known but the muscle's own.
     """
     inside = muscle.chamber is not None and muscle.chamber.inside
     effects = [one for one in effects if one.field != "chamber.gap" or inside]
+    effects = [one for one in effects if one.field != "end_radii" or muscle.end_radii is not None]
     own: dict[str, dict[str, Any]] = {}
     if muscle.friction is not None:
         own["friction"] = {"on": muscle.friction, "switch": "friction, as given", "assumed": False}

@@ -29,6 +29,7 @@ def derived(muscle: Muscle) -> Iterator[tuple[str, str, str]]:
         yield "fibre stiffness EA", show(fibre.EA, "N"), "tension over strain of one fibre"
     if muscle.chamber is not None and hasattr(muscle.chamber.law, "shear_modulus"):
         yield "shear modulus", show(muscle.chamber.law.shear_modulus, "kPa"), "of the chamber, at small strain"
+    yield from _fittings(muscle)
     yield from _chamber(muscle)
     if fibre.diameter is not None:
         room = across(braid.radius, braid.angle, braid.fibres)
@@ -36,6 +37,16 @@ def derived(muscle: Muscle) -> Iterator[tuple[str, str, str]]:
         yield "jamming room", show(room, "m"), said
         ends = [show(length, "m", 4) for length in jamming_lengths(muscle)]
         yield "jammed", f"below {ends[0]}, beyond {ends[1]}", "length of the cylinder whose neighbouring fibres touch"
+
+
+def _fittings(muscle: Muscle) -> Iterator[tuple[str, str, str]]:
+    """What follows from fittings of another radius than the braid's."""
+    braid = muscle.braid
+    for radius, where in zip(muscle.end_radii or (), ("first", "last"), strict=False):
+        angle = math.acos(radius * math.cos(braid.angle) / braid.radius)
+        name = "both fittings" if len(muscle.end_radii or ()) == 1 else f"{where} fitting"
+        meaning = f"braid angle from the parallels that its radius holds, {show(radius, 'm')}"
+        yield f"angle at the {name}", show(angle, "rad", 4), meaning
 
 
 def _chamber(muscle: Muscle) -> Iterator[tuple[str, str, str]]:

@@ -52,7 +52,7 @@ def response(
         energy_bending_1, energy_bending_2, energy_twist, energy_chamber, energy, air_volume, peak_fibre_tension,
         largest_radius.
         A state that was not reached is NaN and its derivatives are not finite; they do not touch those of the others.
-        States are symmetric and are not judged: `run` says which ones are stable and admissible.
+        States are as symmetric as the muscle, and are not judged: `run` says which ones are stable and admissible.
 
     Raises:
         SpecError: for a test without derivatives, or a tolerance out of range.
@@ -63,7 +63,7 @@ def response(
     [3.29, 52.36, 101.22]
     """
     refuse_friction(muscle, "response")
-    steps = differentiable(test.as_steps(muscle))
+    steps = differentiable(test.as_steps(muscle), muscle)
     p = parameters(muscle)
     fixed_p, fixed_steps = jax.tree.map(jax.lax.stop_gradient, (p, steps))
     if any(isinstance(leaf, jax.core.Tracer) for leaf in jax.tree.leaves((fixed_p, fixed_steps))):
@@ -75,8 +75,14 @@ def response(
     return _results(basis, b, states, p, steps)
 
 
-def differentiable(steps: tuple[Step, ...]) -> tuple[Step, ...]:
+def differentiable(steps: tuple[Step, ...], muscle: Muscle) -> tuple[Step, ...]:
     """The steps; SpecError for those whose states are no function of the numbers given."""
+    first = steps[0]
+    if muscle.end_radii is not None and (
+        first.gas is not None or any(getattr(first, name).needs_present for name in first.controls)
+    ):
+        said = "has no derivatives where the test begins at what the muscle reads as mounted"
+        raise SpecError("muscle.end_radii", allowed=said, advice='say where it begins, such as pressure = "0 to 1 bar"')
     for step in steps:
         if step.along == Along.BRANCH:
             advice = 'leave it out, or give the values of what is held ("values")'
@@ -121,10 +127,11 @@ def settled(
     basis: Basis, p: Parameters, b: Number, near: Unknowns, step: Step, present: Now, row: Any = None
 ) -> Unknowns:
     """The states of a step (or the one in its `row`) as functions of the numbers, from states that are known."""
-    asked = wanted(step, present, place(basis, p, b))
-    own, rows = rows_of(asked.names, near.loads.shape[-1])
+    asked, loads = wanted(step, present, place(basis, p, b)), near.loads.shape[-1]
+    own, rows = rows_of(asked.names, loads)
+    targets = asked.targets if loads == 2 else jnp.pad(asked.targets, ((0, 0), (0, 1)))
     one = partial(_settled_one, (basis, own), p, b, jnp.asarray(rows))
-    return one(near, asked.targets[row]) if row is not None else jax.vmap(one)(near, asked.targets)
+    return one(near, targets[row]) if row is not None else jax.vmap(one)(near, targets)
 
 
 def _settled_one(static: Any, p: Parameters, b: Number, rows: Array, near: Unknowns, target: Array) -> Unknowns:

@@ -127,7 +127,7 @@ def _follow(
     bench: Bench, problem: Problem, steps: tuple[Step, ...], tolerance: float, watch: Callable[[int, int], None]
 ) -> list[Part]:
     """Every step in turn, each from where the one before ended; after one that was not finished none is tried."""
-    rest = at_rest(problem)
+    rest = _as_mounted(problem, steps[0])
     present: dict[str, float] = {name: getattr(rest, name) for name in NAMES}
     parts: list[Part] = []
     here: Equilibrium | None = None
@@ -159,6 +159,14 @@ def _follow(
             present = {name: getattr(here, name) for name in NAMES}
         done += n
     return parts
+
+
+def _as_mounted(problem: Problem, first: Step) -> Equilibrium:
+    """Where a test begins: the muscle at its own length without pressure, which is the undeformed one unless fittings
+    of another radius strain it; then it is sought where the first step asks for it."""
+    if problem.p.end_radii is None or not any(getattr(first, name).needs_present for name in first.controls):
+        return at_rest(problem)
+    return find(problem, Held.of(length=float(problem.p.rest), pressure=0.0))
 
 
 def _walk(

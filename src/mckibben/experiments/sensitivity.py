@@ -72,7 +72,7 @@ def sensitivity(
     braid.angle  37 deg   5.35
     """
     refuse_friction(muscle, "sensitivity")
-    steps = differentiable(test.as_steps(muscle))
+    steps = differentiable(test.as_steps(muscle), muscle)
     index, row = _place(steps, state)
     columns = [list(OBSERVED).index(name) for name in _results(of, steps[index])]
     known = {name: (declared, number) for name, declared, number in numbers(muscle)}

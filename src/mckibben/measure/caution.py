@@ -127,7 +127,7 @@ def before(muscle: Muscle, length: float | None, pressure: float) -> list[str]:
 def thick_wall(muscle: Muscle) -> list[str]:
     """The chamber's wall against the thin-wall assumption, where it is made."""
     chamber = muscle.chamber
-    if chamber is None or chamber.thick:
+    if chamber is None or chamber.thick or chamber.wall_thickness is None:
         return []
     ratio = chamber.wall_thickness / chamber.riding_radius(muscle.braid.radius)
     if ratio <= THICK_WALL:

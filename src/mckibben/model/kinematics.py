@@ -2,13 +2,14 @@
 
 import jax.numpy as jnp
 
-from mckibben.model.angle import cos, sin, tan
+from mckibben.model.angle import cos, radians, sin, tan
 from mckibben.model.parameters import Number, Parameters
 from mckibben.model.point import Point
 
 __all__ = [
     "angle_rate",
     "closure_rate",
+    "end_angle",
     "facing",
     "fibre_strains",
     "height_rate",
@@ -54,10 +55,23 @@ def stretch_rate(at: Point, p: Parameters) -> Number:
 
 
 def closure_rate(at: Point, p: Parameters) -> Number:
-    """Density of what vanishes where both ends have one radius: theta', or -r' cos(theta0)/R0 of stretching fibres."""
+    """Density of what vanishes where both ends have their radii: theta', or -r' cos(theta0)/R0 of stretching fibres,
+    less what its integral is where these differ."""
+    rate = angle_rate(at, p) if at.stretch is None else -meridian_stretch(at, p) * sin(at.psi) * cos(p.theta0) / p.R0
+    if p.end_radii is None or len(p.end_radii) == 1:
+        return rate
     if at.stretch is None:
-        return angle_rate(at, p)
-    return -meridian_stretch(at, p) * sin(at.psi) * cos(p.theta0) / p.R0
+        return rate - (end_angle(p, 1) - end_angle(p, 0)) / p.H0
+    first, last = p.end_radii
+    return rate - (first - last) * cos(p.theta0) / (p.R0 * p.H0)
+
+
+def end_angle(p: Parameters, end: int) -> Number:
+    """Braid angle [rad] of fibres that do not stretch at the first end (0) or the last (1): R1 = R0 cos/cos(theta0)."""
+    if p.end_radii is None:
+        return radians(p.theta0)
+    radius = p.end_radii[0] if len(p.end_radii) == 1 else p.end_radii[end]
+    return jnp.arccos(radius * cos(p.theta0) / p.R0)
 
 
 def height_rate(at: Point, p: Parameters) -> Number:

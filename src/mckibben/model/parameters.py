@@ -69,6 +69,7 @@ class Parameters(NamedTuple):
     friction: Any = None  #: `Rubbing` where crossings rub, None where they turn freely
     dead: Any = None  #: length under both fittings that neither shortens nor lengthens [m]; None where there is none
 
+    end_radii: Any = None  #: radii that the fittings hold [m], one for both or two; None where it is that of the braid
     axial: Any = None  #: `spec.AxialLaw` of fibres that stretch, None where T = EA (lambda - 1)
 
     @property
@@ -114,6 +115,7 @@ def numbers(muscle: Muscle) -> Parameters:
         fibre.stiffening,
         _rubbing(muscle),
         None if fittings is None else fittings.dead_length,
+        muscle.end_radii,
         fibre.axial_law,
     )  # fmt: skip
 

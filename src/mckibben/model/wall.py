@@ -1,7 +1,8 @@
 """The chamber's wall: its energy per unit v from the stretches of the mesh it rides on, and what derives from that.
 
 The face that rides on the mesh has the radius and the meridian of the mesh. A thin wall has its stretches throughout;
-a thick one those of an incompressible tube of this radius and axial stretch (theory page).
+a thick one those of an incompressible tube of this radius and axial stretch; bellows store energy by the axial one
+alone (theory page).
 """
 
 import jax
@@ -13,6 +14,7 @@ from mckibben.model.chamber import energy_density
 from mckibben.model.kinematics import radius, stretches
 from mckibben.model.parameters import Number, Parameters
 from mckibben.model.point import Point
+from mckibben.spec.bellows import Bellows
 
 __all__ = [
     "chamber_density",
@@ -29,8 +31,12 @@ quarter."""
 
 
 def mean_density(hoop: Number, axial: Number, p: Parameters) -> Number:
-    """Energy per volume of rubber [Pa], averaged through the wall, where the mesh has these stretches."""
+    """Energy per volume of rubber [Pa], averaged through the wall, where the mesh has these stretches; of bellows
+    per unit v [J/m]."""
     hoop, axial = _mounted(hoop, axial, p)
+    if isinstance(p.law, Bellows):
+        as_made = 1.0 if p.tube is None else 1.0 / p.tube.axial  # length of bellows per unit v
+        return 0.5 * as_made * p.law.axial_stiffness * (axial - 1.0) ** 2
     if p.tube is None or p.tube.across is None:
         return energy_density(hoop, axial, 1.0 / (hoop * axial), p.law)
     width = jnp.log1p(p.tube.across - 1.0)
@@ -46,6 +52,11 @@ def mean_density(hoop: Number, axial: Number, p: Parameters) -> Number:
     return jnp.where(bore > 0.0, 1.0, jnp.nan) * mean
 
 
+def _rubber(p: Parameters) -> Number:
+    """What an energy per volume is of: rubber per unit v [m^2]; that of bellows is per unit v as it is."""
+    return jnp.ones_like(p.A0) if isinstance(p.law, Bellows) else p.A0
+
+
 def _mounted(hoop: Number, axial: Number, p: Parameters) -> tuple[Number, Number]:
     """Stretches of the rubber at the face that rides on the mesh, from those of the mesh."""
     return (hoop, axial) if p.tube is None else (hoop * p.tube.hoop, axial * p.tube.axial)
@@ -58,24 +69,27 @@ def _beside(at: Point, p: Parameters) -> tuple[Number, Number]:
 
 
 def chamber_stretches(at: Point, p: Parameters) -> tuple[Number, Number, Number]:
-    """Principal stretches of the rubber at the face that rides on the mesh: hoop, axial, thickness."""
+    """Principal stretches of the rubber at the face that rides on the mesh: hoop, axial, thickness.
+
+    Those of bellows are of the surface that their folds lie in; the wall itself keeps its thickness.
+    """
     hoop, axial, thickness = stretches(at, p)
-    if p.tube is None:
-        return hoop, axial, thickness
-    hoop, axial = _mounted(*_beside(at, p), p)
-    return hoop, axial, 1.0 / (hoop * axial)
+    if p.tube is not None:
+        hoop, axial = _mounted(*_beside(at, p), p)
+        thickness = 1.0 / (hoop * axial)
+    return hoop, axial, jnp.ones_like(thickness) if isinstance(p.law, Bellows) else thickness
 
 
 def chamber_density(at: Point, p: Parameters) -> Number:
     """Energy of the chamber per unit v [J/m]: A0 psi(C) (Eq. 26)."""
     hoop, axial = _beside(at, p)
-    return p.A0 * mean_density(hoop, axial, p)
+    return _rubber(p) * mean_density(hoop, axial, p)
 
 
 def chamber_pull(at: Point, p: Parameters) -> Number:
     """Meridian force of the chamber [N]: A0 d(psi)/d(lambda2) at fixed hoop stretch of the mesh."""
     hoop, axial = _beside(at, p)
-    return p.A0 * jax.grad(lambda a: mean_density(hoop, a, p))(axial)
+    return _rubber(p) * jax.grad(lambda a: mean_density(hoop, a, p))(axial)
 
 
 def contact_pressure(at: Point, P: Number, p: Parameters) -> Number:
@@ -86,7 +100,7 @@ def contact_pressure(at: Point, P: Number, p: Parameters) -> Number:
     hoop, axial, _ = stretches(at, p)
     by_hoop, by_axial = jax.grad(lambda h, a: mean_density(h, a, p), argnums=(0, 1))(hoop, axial)
     borne = by_hoop * cos(at.psi) / p.R0 - by_axial * at.kappa
-    return P - p.A0 * borne / (2.0 * jnp.pi * radius(at, p) * axial)
+    return P - _rubber(p) * borne / (2.0 * jnp.pi * radius(at, p) * axial)
 
 
 def touching_pressure(p: Parameters) -> Number:

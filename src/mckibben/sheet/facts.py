@@ -194,7 +194,7 @@ def _bore(muscle: Muscle) -> float:
     """Room for air in the muscle as made: that of the chamber, or of the braid where it lies outside or is none."""
     braid, chamber = muscle.braid, muscle.chamber
     radius = float(braid.radius)
-    if chamber is not None and chamber.inside:
+    if chamber is not None and chamber.inside and chamber.wall_thickness is not None:
         radius = float(chamber.riding_radius(radius) - chamber.wall_thickness)
     return math.pi * radius**2 * float(braid.length)
 
@@ -215,6 +215,7 @@ def _mass(muscle: Muscle, fibre: float | None, rubber: float | None) -> Fact:
     missing = [] if fibre is not None else ["the density of the fibres"]
     missing += ["the diameter of the fibres"] if braid.fibre.diameter is None else []
     missing += ["the density of the chamber"] if chamber is not None and rubber is None else []
+    missing += ["the wall of the bellows"] if chamber is not None and chamber.wall_thickness is None else []
     if missing:
         return Fact(math.nan, f"not known: {', '.join(missing)}")
     return Fact(float(mass_of(muscle, fibre, rubber)))

@@ -113,9 +113,8 @@ def _muscle(axes: Axes, side: Outline, muscle: Muscle, middle: float, gap: float
                 phi = 2.0 * math.pi * k / count + hand * v * rate
                 front = np.cos(phi) >= 0.0
                 axes.plot(z, np.where(front, middle + r * np.sin(phi), np.nan), color="0.35", linewidth=0.35, zorder=3)
-    r = float(side.r[0])
-    for end, sign in ((0.0, -1.0), (side.shown(gap), 1.0)):
-        drum = [end, end + sign * lead]
+    for end, sign, which in ((0.0, -1.0, 0), (side.shown(gap), 1.0, -1)):
+        drum, r = [end, end + sign * lead], float(side.r[which])
         axes.fill_between(drum, middle - r, middle + r, facecolor="0.7", edgecolor="0.2", linewidth=0.7, zorder=2)
     if side.cut:
         half, r = 0.5 * (side.z[-1] - side.cut), 1.25 * float(side.r.max())

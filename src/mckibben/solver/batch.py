@@ -15,7 +15,8 @@ from mckibben.compiled.arrays import Array
 from mckibben.compiled.kernel import kernel
 from mckibben.discretise.fields import Placed
 from mckibben.solver.follow import Guess, first_guess, kept_going, predict
-from mckibben.solver.held import conditions
+from mckibben.solver.from_rest import begin, target
+from mckibben.solver.held import NAMES, conditions, units
 from mckibben.solver.newton import Correction, correct
 from mckibben.solver.problem import Basis, slopes
 from mckibben.solver.system import Unknowns, system
@@ -78,18 +79,25 @@ def _plus(state: Unknowns, change: Unknowns) -> Unknowns:
     return jax.tree.map(jnp.add, state, change)
 
 
-def arrive(basis: Basis, on: Placed, which: Array, rest: Array, target: Array, limit: Array) -> Arrival:
-    """From the undeformed muscle, which rests at `rest`, to `target`: the pressure first, which stretches the fibres.
+def arrive(basis: Basis, on: Placed, which: Array, rest: Array, goal: Array, limit: Array) -> Arrival:
+    """From the undeformed muscle, which rests at `rest`, to `goal`: the pressure first, which stretches the fibres.
 
-    Steps double as long as Newton follows; at most `limit` systems are solved.
+    Where the fittings have a radius of their own it sets out from the cylinder of the first one, whatever `rest` says,
+    and the other end gets its radius on the way. Steps double as long as Newton follows; at most `limit` systems are
+    solved.
     """
-    corner = jnp.where(target[1] == rest[1], 0.0, 0.5)
+    blank = Unknowns(jnp.zeros(basis.unknowns), jnp.zeros(len(which)))
+    if on.p.end_radii is not None:
+        blank, now = begin(basis, on)
+        size = units(on.unit)
+        rest = jnp.stack([target(name, now) / size[name] for name in (*NAMES, "closure")])[which]
+    corner = jnp.where(goal[1] == rest[1], 0.0, 0.5)
     step = partial(newton, basis, on, which)
 
     def at(t: Array) -> Array:
         first = jnp.clip(t / jnp.maximum(corner, 1e-9), 0.0, 1.0)
         then = jnp.clip((t - corner) / (1.0 - corner), 0.0, 1.0)
-        return rest + (target - rest) * jnp.stack([then, first])
+        return rest + (goal - rest) * jnp.stack([then, first, *[then] * (len(which) - 2)])
 
     def ahead(good: Unknowns, tangents: Unknowns, t: Array, dt: Array) -> Unknowns:
         return jax.tree.map(lambda now, by: now + by @ (at(t + dt) - at(t)), good, tangents)
@@ -113,9 +121,8 @@ def arrive(basis: Basis, on: Placed, which: Array, rest: Array, target: Array, l
         return _Way(good, tangents, t, dt, state, now.systems + 1, tries, taken & last)
 
     zero, none = jnp.zeros(()), jnp.zeros((), int)
-    blank = Unknowns(jnp.zeros(basis.unknowns), jnp.zeros(2))
     c = step(blank, rest)
-    dt, first = jnp.asarray(FIRST_STEP), c.step
+    dt, first = jnp.asarray(FIRST_STEP), c.step if on.p.end_radii is None else _plus(blank, c.step)
     start = _Way(first, c.tangents, zero, dt, ahead(first, c.tangents, zero, dt), none + 1, none, jnp.array(False))
     end = jax.lax.while_loop(going, advance, start)
     return Arrival(first_guess(end.good)._replace(tangents=end.tangents), end.done, end.systems)
@@ -130,7 +137,7 @@ class Course(NamedTuple):
 
 
 def go_on(basis: Basis, on: Placed, g: Guess, which: Array, targets: Array, count: Array, corrections: int) -> Course:
-    """Through targets (n, 2), of which `count` count, from a state at targets[0] (which is corrected too)."""
+    """Through targets (n, l), of which `count` count, from a state at targets[0] (which is corrected too)."""
     n = len(targets)
 
     def advance(k: Array, carry: tuple[Guess, Course]) -> tuple[Guess, Course]:
@@ -165,9 +172,9 @@ class March(NamedTuple):
 def march(
     basis: Basis,
     on: Placed,
-    which: Int[Array, "2"],
-    rest: Float[Array, "batch 2"],
-    targets: Float[Array, "batch n 2"],
+    which: Int[Array, " l"],
+    rest: Float[Array, "batch l"],
+    targets: Float[Array, "batch n l"],
     count: Int[Array, ""],
     limit: Int[Array, ""],
     *,

@@ -37,7 +37,7 @@ class Bench:
     """A muscle on the bench."""
 
     p: Parameters
-    line: Line  #: of one unknown, with what the fibres may do
+    line: Line  #: of one unknown for each half, with what the fibres may do
     longest: float  #: full extension [m], infinite where the fibres stretch
 
     @classmethod
@@ -52,16 +52,19 @@ class Bench:
         """What the fittings hold."""
         return self.line.ends
 
-    def problem(self, size: int, b: float, discretisation: str = "spectral", modes: Any = "odd") -> Problem:
-        """The muscle on a discretisation."""
+    def problem(self, size: int, b: float, discretisation: str = "spectral", modes: Any = None) -> Problem:
+        """The muscle on a discretisation: with as many unknowns as that has for `modes`, or for each half where these
+        are the muscle's own."""
         return Problem.of(self.basis(size, discretisation, modes), self.p, b)
 
-    def basis(self, size: int, discretisation: str = "spectral", modes: Any = "odd") -> Basis:
+    def basis(self, size: int, discretisation: str = "spectral", modes: Any = None) -> Basis:
         """The discretisation."""
+        if discretisation != "paper" and modes is None:
+            return attrs.evolve(self.line, size=size * self.line.size)
         if discretisation != "paper":
             return attrs.evolve(self.line, size=size, modes=modes)
-        if self.line.stretch or self.line.roll or self.line.give:
-            said = "is the paper's own mesh, whose fibres neither stretch nor roll, in fittings that do not give way"
+        if self.line.stretch or self.line.roll or self.line.give or self.p.end_radii is not None:
+            said = "is the paper's own mesh, whose fibres neither stretch nor roll, in rigid fittings of its own radius"
             raise SpecError("discretisation", discretisation, said, 'use "spectral", or leave the effect out')
         return Spline(size, self.ends)
 

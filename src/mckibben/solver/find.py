@@ -92,8 +92,18 @@ def looked_at(problem: Problem, u: np.ndarray, loads: np.ndarray, iterations: in
 
 
 def at_rest(problem: Problem) -> Equilibrium:
-    """The undeformed muscle without loads, whose length and volume are the units."""
+    """The undeformed muscle without loads, whose length and volume are the units.
+
+    Where the fittings have a radius of their own, the cylinder of that of the first one: with the loads that hold it,
+    which no others do on clamped ends of one radius, and nearly so on others.
+    """
     nothing = np.zeros(problem.basis.unknowns), np.zeros(problem.loads)
+    if problem.p.end_radii is not None:
+        cylinder = problem.balance(nothing[0])
+        held = [LENGTH, *([CLOSURE] if problem.basis.closes else [])]
+        loads = np.linalg.lstsq(cylinder.gradients[held].T, cylinder.gradients[0], rcond=None)[0]
+        loads = np.insert(loads, 1, 0.0)
+        return Equilibrium(problem, nothing[0], loads, cylinder.totals, True, 0.0, 0)
     totals = problem.balance(nothing[0]).totals if problem.leaves else np.array([0.0, 1.0, 1.0, 0.0])
     return Equilibrium(problem, *nothing, totals, True, 0.0, 0)
 
@@ -101,8 +111,13 @@ def at_rest(problem: Problem) -> Equilibrium:
 def along(
     problem: Problem, held: Held, start: Equilibrium | None = None, legs: int = LEGS, tolerance: float = 1e-7
 ) -> Equilibrium:
-    """From what is held at the start, or at rest, on the straight way, to the target; quick where nothing is in it."""
+    """From what is held at the start, or at rest, on the straight way, to the target; quick where nothing is in it.
+
+    From rest the last end gets its radius on the way, where it has another than the first.
+    """
     here = at_rest(problem) if start is None else start
+    if start is None and problem.p.end_radii is not None and problem.basis.closes:
+        held = Held((*held.names, "closure"), (*held.values, 0.0))
     first = attrs.evolve(held, values=readings(here, held.names))
     path = [first.towards(held, k / legs) for k in range(legs + 1)]
     states = follow_to(problem, path, here, tolerance)
@@ -111,7 +126,7 @@ def along(
         found, theta = looked_at(problem, last.u, last.loads, sum(one.iterations for one in states[1:]))
         if found.converged and inside(theta):
             return found
-    names = " and ".join(str(name) for name in held.names)
+    names = " and ".join(str(name) for name in held.names if name != "closure")
     advice = f"no state with this {names} was found on the straight way from the start"
     return attrs.evolve(here, converged=False, residual=np.inf, message=advice)
 

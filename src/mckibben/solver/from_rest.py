@@ -20,7 +20,7 @@ from mckibben.solver.problem import Basis
 from mckibben.solver.system import Unknowns, system
 from mckibben.spec.loading import Step
 
-__all__ = ["Wanted", "approach", "rest", "wanted"]
+__all__ = ["Wanted", "approach", "begin", "reading", "rest", "target", "wanted"]
 
 LEG = 10
 """States on each straight leg of the way to the first state of a step."""
@@ -40,6 +40,17 @@ def rest(on: Placed) -> Now:
     one = jnp.ones_like(on.unit[0])
     volume = inside_at_rest(on.p) / on.unit[2] if leaves(on.p) else one
     return read_rows(on.unit, jnp.stack([one, volume]), jnp.stack([0.0 * one, 0.0 * one]), on.p)
+
+
+def begin(basis: Basis, on: Placed) -> tuple[Unknowns, Now]:
+    """The undeformed muscle, or the cylinder of the first fitting's own radius with the loads that hold it."""
+    state = Unknowns(jnp.zeros(basis.unknowns), jnp.zeros(3 if basis.closes else 2))
+    if on.p.end_radii is None:
+        return state, rest(on)
+    s = system(basis, on, state)
+    axial = jnp.delete(s.gradients, 1, axis=0)
+    loads = jnp.insert(jnp.linalg.lstsq(axial.T, s.rest)[0], 1, 0.0)
+    return state._replace(loads=loads), read_rows(on.unit, s.values, loads, on.p)
 
 
 def reading(basis: Basis, on: Placed, state: Unknowns) -> Now:
@@ -70,7 +81,7 @@ def wanted(step: Step, present: Now, on: Placed) -> Wanted:
 def approach(basis: Basis, p: Parameters, b: Number, steps: tuple[Step, ...]) -> tuple[Unknowns, ...]:
     """States of each step, with a leading dimension; from the first that is not reached on NaN."""
     on = place(basis, p, b)
-    state, have = Unknowns(jnp.zeros(basis.unknowns), jnp.zeros(2)), rest(on)
+    state, have = begin(basis, on)
     walk = _Walk(basis, p, b, on)
     found = []
     for index, step in enumerate(steps):
@@ -80,7 +91,7 @@ def approach(basis: Basis, p: Parameters, b: Number, steps: tuple[Step, ...]) ->
         size = units(on.unit)
         present = jnp.stack([target(name, have) / size[name] for name in asked.names])
         lead = _straight(present, asked.targets[0])
-        states, have = walk.along(asked.names, state, jnp.concatenate([lead, asked.targets]))
+        states, have = walk.along(asked.names, state, have, jnp.concatenate([lead, asked.targets]))
         found.append(jax.tree.map(lambda row: row[LEG:], states))
         state = jax.tree.map(lambda row: row[-1], states)
     return tuple(found)
@@ -101,13 +112,20 @@ class _Walk(NamedTuple):
         end = targets[0, names.index(axial)] if axial in names else now[0]
         above, aside = jnp.stack([now[0], top]), jnp.stack([end, top])
         way = jnp.concatenate([_straight(now, above), _straight(above, aside), aside[None]])
-        states, last = self.along((axial, "pressure"), state, way)
+        states, last = self.along((axial, "pressure"), state, have, way)
         return jax.tree.map(lambda row: row[-1], states), last
 
-    def along(self, names: tuple[str, ...], state: Unknowns, way: Array) -> tuple[Unknowns, Now]:
-        """States along a way that begins where `state` is, NaN beyond the part reached; what the last one reads."""
-        own, which = rows_of(names, 2)
+    def along(self, names: tuple[str, ...], state: Unknowns, have: Now, way: Array) -> tuple[Unknowns, Now]:
+        """States along a way that begins where `state` is, NaN beyond the part reached; what the last one reads.
+
+        Where the other end has not its radius yet, it gets it on the first leg.
+        """
+        loads = len(state.loads)
+        own, which = rows_of(names, loads)
         n = way.shape[0]
+        if loads == 3:
+            share = jnp.clip(1.0 - jnp.arange(n) / LEG, 0.0, 1.0)
+            way = jnp.concatenate([way, (share * have.closure)[:, None]], axis=1)
         track = follow(
             (self.basis, own), self.p, self.b, state, jnp.asarray(which), way, jnp.asarray(n), jnp.asarray(CLOSE)
         )

@@ -11,7 +11,19 @@ from mckibben.spec.fibre import Fibre
 from mckibben.spec.fields import spec_classes
 from mckibben.spec.fittings import Fittings
 from mckibben.spec.friction import Friction
-from mckibben.spec.laws import LAWS, ArrudaBoyce, CustomLaw, Gent, Law, MooneyRivlin, NeoHookean, Ogden, Rubber, Yeoh
+from mckibben.spec.laws import (
+    LAWS,
+    ArrudaBoyce,
+    Bellows,
+    CustomLaw,
+    Gent,
+    Law,
+    MooneyRivlin,
+    NeoHookean,
+    Ogden,
+    Rubber,
+    Yeoh,
+)
 from mckibben.spec.loading import (
     TESTS,
     Along,
@@ -46,6 +58,7 @@ __all__ = [
     "Along",
     "ArrudaBoyce",
     "AxialLaw",
+    "Bellows",
     "BlockedForce",
     "Braid",
     "Chamber",

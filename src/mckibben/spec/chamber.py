@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from enum import StrEnum
 
+from mckibben.spec.bellows import Bellows
 from mckibben.spec.declared import Reads
 from mckibben.spec.errors import SpecError
 from mckibben.spec.fields import choice, part, quantity, spec, switch
@@ -45,7 +46,8 @@ class Chamber:
     Args:
         thickness: wall thickness t0 as made [m], above 0.
         law: hyperelastic law of the elastomer: `MooneyRivlin`, `NeoHookean`, `Yeoh`, `Ogden`, `Gent`, `ArrudaBoyce`,
-            `CustomLaw`, or `Rubber` where nothing was tested.
+            `CustomLaw`, or `Rubber` where nothing was tested; or `Bellows`, which store energy by their length alone
+            and need neither thickness nor diameters.
         lies: side of the fibres' radius R0 on which the wall lies: "outside", the paper's, or "inside". Where it is
             left out: outside with a thickness, inside with diameters (which know no outside).
         outer_diameter: diameter over the unstretched tube [m], at most 2 R0; instead of a thickness.
@@ -59,7 +61,7 @@ class Chamber:
 
     Raises:
         SpecError: for a value out of range, a law that is none of these, a thickness beside diameters, or half of
-            these; for a gap of a chamber that lies outside.
+            these; for a gap of a chamber that lies outside; for bellows with a gap or a thick wall.
 
     >>> chamber = mk.Chamber(thickness="1 mm", law=mk.MooneyRivlin(c1="8.5 kPa"))
     >>> chamber.thickness  # m
@@ -105,7 +107,9 @@ class Chamber:
         both = "give either thickness, or outer_diameter and inner_diameter"
         if self.thickness is not None and given:
             raise SpecError("chamber", allowed=f"both thickness and {' and '.join(given)} are given", advice=both)
-        if self.thickness is None and not given:
+        if isinstance(self.law, Bellows):
+            self._check_bellows()
+        elif self.thickness is None and not given:
             raise SpecError("chamber.thickness", allowed="is missing: wall thickness t0 as made", advice=both)
         if len(given) == 1:
             missing = next(name for name in _DIAMETERS if name not in given)
@@ -125,6 +129,16 @@ class Chamber:
         if known and not self.inner_diameter < self.outer_diameter:
             said = f"must be below the outer diameter, {show(self.outer_diameter, 'm')}"
             raise SpecError("chamber.inner_diameter", show(self.inner_diameter, "m"), said, "leave some wall")
+
+    def _check_bellows(self) -> None:
+        """SpecError for what bellows cannot have."""
+        advice = "leave it out, or take the law of a rubber"
+        if self.thick:
+            said = "does not go with bellows: what their folds store is not told by the stretches through a wall"
+            raise SpecError("chamber.wall", "thick", said, advice)
+        if self.gap:
+            said = "does not go with bellows: they grow wider at no pressure at all, so that nothing leaves a gap"
+            raise SpecError("chamber.gap", "true", said, advice)
 
     @property
     def own(self) -> bool:
@@ -147,7 +161,7 @@ class Chamber:
 
     @property
     def wall_thickness(self) -> Number:
-        """Thickness of the wall as made [m]."""
+        """Thickness of the wall as made [m]; None of bellows whose wall is not told."""
         if self.outer_diameter is None or self.inner_diameter is None:
             return self.thickness
         return (self.outer_diameter - self.inner_diameter) / 2.0
@@ -155,6 +169,8 @@ class Chamber:
     def area(self, R0: Number) -> Number:
         """Cross-section of the wall as made [m^2], in a braid of radius R0 [m]."""
         t, R = self.wall_thickness, self.riding_radius(R0)
+        if t is None:
+            return 0.0 * R0
         return math.pi * t * (2.0 * R - t if self.inside else t + 2.0 * R)
 
     def other_face(self, R0: Number) -> Number:

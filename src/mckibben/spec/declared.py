@@ -135,7 +135,7 @@ def evolved(value: T, /, **changes: Any) -> T:
 
 def _read_again(owner: Any, declared: Declared | None, new: Any) -> Any:
     """A new value as its field reads it, by itself."""
-    if declared is None or new is None or declared.kind not in ("quantity", "path", "held"):
+    if declared is None or new is None or declared.kind not in ("quantity", "quantities", "path", "held"):
         return new
     return declared.read(new, f"{owner.__spec_path__}.{declared.name}", declared)
 

@@ -103,13 +103,23 @@ def _read_quantities(value: Any, field: str, declared: Declared) -> tuple[Number
 
 
 def quantities(
-    unit: str, *, meaning: str, size: tuple[float, float] = (0.0, math.inf), display: str = "", source: str = ""
+    unit: str,
+    *,
+    meaning: str,
+    low: float = -math.inf,
+    low_open: bool = False,
+    size: tuple[float, float] = (0.0, math.inf),
+    display: str = "",
+    source: str = "",
+    default: Any = attrs.NOTHING,
+    doubt: Doubt | None = None,
+    read: Callable[[Any, str, Declared], tuple[Number, ...]] = _read_quantities,
 ) -> Any:
-    """A list of one or more numbers with the same unit, stored as a tuple."""
+    """A list of one or more numbers with the same unit, stored as a tuple; with `default=None` it may be left out."""
     return declare(
         Declared(
-            kind="quantities", read=_read_quantities, unit=unit, meaning=meaning, size=size, display=display,
-            source=source,
+            kind="quantities", read=read, unit=unit, meaning=meaning, low=low, low_open=low_open, size=size,
+            display=display, source=source, default=default, doubt=doubt, quiet=default is None,
         )
     )  # fmt: skip
 

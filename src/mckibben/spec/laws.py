@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from typing import ClassVar
 
+from mckibben.spec.bellows import Bellows
 from mckibben.spec.custom import CustomLaw
 from mckibben.spec.declared import Reads
 from mckibben.spec.errors import SpecError
@@ -19,6 +20,7 @@ from mckibben.units import Number, is_traced
 __all__ = [
     "LAWS",
     "ArrudaBoyce",
+    "Bellows",
     "CustomLaw",
     "Gent",
     "Law",
@@ -225,8 +227,8 @@ class ArrudaBoyce:
         return self.mu * (1.0 + x * (3 / 5 + x * (99 / 175 + x * (513 / 875 + x * (42039 / 67375)))))
 
 
-Law = MooneyRivlin | NeoHookean | Yeoh | Ogden | Gent | ArrudaBoyce | Rubber | CustomLaw
+Law = MooneyRivlin | NeoHookean | Yeoh | Ogden | Gent | ArrudaBoyce | Rubber | Bellows | CustomLaw
 LAWS: dict[str, type] = {
-    law.name: law for law in (MooneyRivlin, NeoHookean, Yeoh, Ogden, Gent, ArrudaBoyce, Rubber, CustomLaw)
+    law.name: law for law in (MooneyRivlin, NeoHookean, Yeoh, Ogden, Gent, ArrudaBoyce, Rubber, Bellows, CustomLaw)
 }
 """The laws by their name in files."""

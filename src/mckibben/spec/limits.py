@@ -42,7 +42,8 @@ def _check_chamber(chamber: Any, braid: Any) -> None:
     R0, H0 = braid.radius, braid.length
     field = "chamber" if chamber.thickness is None else "chamber.thickness"
     _check_room(chamber, R0, H0)
-    _check_ratio(field, chamber.wall_thickness, R0, "the radius of the braid", WALL)
+    if chamber.wall_thickness is not None:
+        _check_ratio(field, chamber.wall_thickness, R0, "the radius of the braid", WALL)
     for name, value, stretch, other in (
         ("outer_diameter", chamber.outer_diameter, chamber.stretches(R0, H0)[0], "the braid's over its own"),
         ("length", chamber.length, chamber.stretches(R0, H0)[1], "the braid's over its own"),
@@ -59,7 +60,7 @@ def _check_chamber(chamber: Any, braid: Any) -> None:
 def _check_room(chamber: Any, R0: Number, H0: Number) -> None:
     """SpecError for a tube wider than its braid, a wall inside that leaves no bore, or a bore closed as mounted."""
     numbers = (R0, H0, chamber.outer_diameter, chamber.inner_diameter, chamber.thickness, chamber.length)
-    if not chamber.inside or any(is_traced(x) for x in numbers):
+    if not chamber.inside or chamber.wall_thickness is None or any(is_traced(x) for x in numbers):
         return
     if chamber.outer_diameter is not None and chamber.outer_diameter > 2.0 * R0 * (1.0 + ROUNDING):
         said = f"must be at most {show(2.0 * R0, 'm')}, twice the radius of the braid: a wider tube would lie in folds"
@@ -82,11 +83,14 @@ def _bore(chamber: Any, R0: Any, H0: Any) -> Any:
 def certainly_fits(braid: Any, chamber: Any) -> Any:
     """Whether the chambers of many muscles, whose numbers are arrays, certainly fit into their braids."""
     R0, H0 = braid.radius, braid.length
-    share, (hoop, axial) = chamber.wall_thickness / R0, chamber.stretches(R0, H0)
-    good: Any = (share >= WALL[0]) & (share <= WALL[1])
+    hoop, axial = chamber.stretches(R0, H0)
+    good: Any = True
+    if chamber.wall_thickness is not None:
+        share = chamber.wall_thickness / R0
+        good = (share >= WALL[0]) & (share <= WALL[1])
     for stretch in (hoop, axial):
         good = good & (stretch >= MOUNTED[0]) & (stretch <= MOUNTED[1])
-    if not chamber.inside:
+    if not chamber.inside or chamber.wall_thickness is None:
         return good
     bore = chamber.wall_thickness / chamber.riding_radius(R0) < 1.0
     return good & bore & (hoop >= 1.0) & (chamber.wall_thickness > 0.0) & (_bore(chamber, R0, H0) > 0.0)

@@ -12,10 +12,11 @@ from mckibben.spec.angle import AngleFrom, both_ways, from_parallels, tendency
 from mckibben.spec.chamber import Chamber
 from mckibben.spec.change import changed_muscle
 from mckibben.spec.declared import Reads, walk
+from mckibben.spec.end_radii import check_end_radii, read_radii
 from mckibben.spec.ends import Ends
 from mckibben.spec.errors import SpecError, nearest
 from mckibben.spec.fibre import Fibre
-from mckibben.spec.fields import choice, count, part, quantity, spec, words
+from mckibben.spec.fields import choice, count, part, quantities, quantity, spec, words
 from mckibben.spec.fittings import Fittings
 from mckibben.spec.friction import Friction, check_friction
 from mckibben.spec.limits import check_angle, check_muscle
@@ -146,12 +147,17 @@ class Muscle:
         ends: what the fittings hold, one of `Ends`: "clamped" (default), "pinned" or "free".
         fittings: `Fittings` that give way or hide a dead length, or None for neither.
         friction: `Friction` where fibres cross, or None for the paper's, which turn freely.
+        end_radii: radius of the fibres' centre lines on the fittings [m], where it is not that of the braid: one for
+            both ends, or a list of that at the first end (v = 0) and that at the last. The braid is made as a cylinder
+            and pushed over the fittings, so that it is strained there without any load; its own length stays that of
+            the cylinder. Two radii, also two alike, are solved on the full length.
         name: a name for people, shown in tables and files.
         assumed: names of the fields ("braid.fibres") whose values are assumptions; tables, pictures and files mark
             them. A hardness (`Rubber`) always is among them: the stiffness is estimated from it.
 
     Raises:
-        SpecError: for a part of the wrong kind, or a name in `assumed` that is no field of this muscle.
+        SpecError: for a part of the wrong kind, a name in `assumed` that is no field of this muscle, or a fitting that
+            its braid cannot take.
 
     >>> fibre = mk.Fibre(diameter="0.25 mm", E="3 GPa", nu=0.4)
     >>> braid = mk.Braid(radius="12.5 mm", length="85 mm", angle="37 deg", fibres=56, fibre=fibre)
@@ -159,6 +165,8 @@ class Muscle:
     >>> muscle = mk.Muscle(braid=braid, chamber=chamber, ends="clamped")
     >>> muscle.replace("braid.angle", "36 deg").braid.fibres
     56
+    >>> muscle.replace("end_radii", ["12.5 mm", "9 mm"]).end_radii  # m
+    (0.0125, 0.009)
     """
 
     braid: Braid = part(Braid, meaning="the tube of fibres")
@@ -168,6 +176,11 @@ class Muscle:
         Fittings, meaning="what the fittings add in series, none for nothing", default=None, quiet=True
     )
     friction: Friction | None = part(Friction, meaning="friction where fibres cross", default=None, quiet=True)
+    end_radii: Reads[tuple[float, ...] | None] = quantities(
+        "m", meaning="radii that the fittings hold, none for that of the braid", low=0.0, low_open=True,
+        size=(1e-6, 100.0), source="theory page, fittings of another radius", default=None, doubt=(1.0, 1e3),
+        read=read_radii,
+    )  # fmt: skip
     name: str | None = words(meaning="a name for people", default=None)
     assumed: tuple[str, ...] = words(meaning="names of fields whose values are assumptions", many=True, default=())
 
@@ -182,6 +195,7 @@ class Muscle:
                 raise SpecError("muscle.assumed", field, "is no field of this muscle", nearest(field, known))
         check_friction(self.friction, self.braid.fibre.diameter)
         check_muscle(self)
+        check_end_radii(self)
 
     def __remark__(self) -> str:
         """What the braid angle means."""

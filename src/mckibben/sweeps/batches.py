@@ -59,7 +59,7 @@ def solve_together(
     with ThreadPoolExecutor(threads) as pool:
         close = CLOSE * math.sqrt(tolerance)
         for size in (size for size in sizes_for("spectral", tolerance) if size <= LARGEST):
-            line = attrs.evolve(group.line, size=size)
+            line = attrs.evolve(group.line, size=size * group.line.size)
             paths = followed(pool, group.take(left), line, close)
             if (~paths.good).sum() > left_out * len(paths.good):
                 paths = finer(pool, paths, close)

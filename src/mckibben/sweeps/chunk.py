@@ -53,7 +53,7 @@ def solve_piece(piece: Piece, watch: Callable[[int], None] | None = None) -> Col
 def _keep(columns: Columns, solved: Solved) -> None:
     """Designs that a batch did: as they are where all is plain, else with verdicts as for a single run."""
     plain = solved.plain.all(axis=1)
-    keep_plain(columns, solved.group.index, solved.numbers, solved.stable_loads)
+    keep_plain(columns, solved.group.index, solved.numbers, solved.stable_loads, not solved.line.half)
     for d in np.flatnonzero(~plain).tolist():
         p = jax.tree.map(lambda values, d=d: np.asarray(values[d]), solved.group.p)
         problem = Problem.of(solved.line, p, float(solved.b[d]))

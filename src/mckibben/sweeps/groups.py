@@ -16,9 +16,23 @@ import numpy as np
 from mckibben.discretise.spectral import Line
 from mckibben.model.parameters import Parameters, numbers
 from mckibben.solver.bench import jumps
-from mckibben.spec import Along, BlockedForce, Braid, CustomLaw, Ends, Muscle, Path, Protocol, SpecError, Step, Test
+from mckibben.spec import (
+    Along,
+    Bellows,
+    BlockedForce,
+    Braid,
+    CustomLaw,
+    Ends,
+    Muscle,
+    Path,
+    Protocol,
+    SpecError,
+    Step,
+    Test,
+)
 from mckibben.spec import numbers as leaves_of
 from mckibben.spec.angle import from_parallels
+from mckibben.spec.end_radii import certainly_held
 from mckibben.spec.limits import certainly_fits
 from mckibben.spec.vary import changed
 from mckibben.sweeps.plan import Piece
@@ -114,6 +128,8 @@ def grouped(muscle: Muscle, test: Test, values: dict[str, np.ndarray], index: np
     if muscle.friction is not None:
         return None  # each state depends on the one before, point by point
     steps = test.as_steps(muscle)
+    if muscle.end_radii is not None and any(getattr(steps[0], name).needs_present for name in steps[0].controls):
+        return None  # where it begins has to be found first
     held = tuple(str(name) for name in steps[0].controls)
     if held[1:] != ("pressure",) or any(not _followed(step, held) for step in steps):
         return None
@@ -170,9 +186,11 @@ def _valid(muscle: Muscle) -> Any:
     if diameter is not None:
         room = 2.0 * np.pi * braid.radius * np.sin(braid.angle)
         good = good & (0.5 * np.asarray(braid.fibres) * diameter <= FITS * room)
+    if muscle.end_radii is not None:
+        good = good & certainly_held(braid, muscle.end_radii)
     if muscle.chamber is not None:
         good = good & certainly_fits(braid, muscle.chamber)
-    if muscle.chamber is not None and not isinstance(muscle.chamber.law, CustomLaw):
+    if muscle.chamber is not None and not isinstance(muscle.chamber.law, (CustomLaw, Bellows)):
         good = good & (np.asarray(muscle.chamber.law.shear_modulus) > 0.0)
     return good
 
@@ -204,5 +222,9 @@ def surely_reached(p: Parameters, ends: str) -> np.ndarray:
         return np.full_like(fibre, np.inf)
     if ends == Ends.FREE:
         return np.asarray(fibre + (p.rest - p.H0))
+    if p.end_radii is not None:
+        widest = p.R0 / np.cos(p.theta0)
+        takes = sum(widest - np.sqrt(widest**2 - radius**2) for radius in (p.end_radii[0], p.end_radii[-1]))
+        return np.asarray(fibre - takes + (p.rest - p.H0))
     held = np.maximum(fibre - 2.0 * p.R0 / np.cos(p.theta0) * (1.0 - np.sin(p.theta0)), p.H0)
     return held + (p.rest - p.H0)

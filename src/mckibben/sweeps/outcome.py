@@ -148,11 +148,15 @@ class Kinds:
     antisymmetric: np.ndarray
 
 
-def keep_plain(columns: Columns, index: np.ndarray, numbers: dict[str, np.ndarray], stable_loads: np.ndarray) -> None:
-    """Put many designs (d, n) of a batch, stable in every state, into the columns at `index`."""
+def keep_plain(
+    columns: Columns, index: np.ndarray, numbers: dict[str, np.ndarray], stable_loads: np.ndarray, whole: bool
+) -> None:
+    """Put many designs (d, n) of a batch, stable in every state, into the columns at `index`; `whole` of those solved
+    on the full length, whose antisymmetric modes are not told apart."""
     for name in (*_NUMBERS, *_LARGEST):
         columns[name][index] = numbers[name]
-    columns["modes_length_control"][index] = columns["modes_antisymmetric"][index] = 0
+    columns["modes_length_control"][index] = 0
+    columns["modes_antisymmetric"][index] = -1 if whole else 0
     columns["modes_force_control"][index] = np.where(stable_loads, 0, 1)
     columns["verdict"][index] = VERDICTS.index(Verdict.STABLE)
     columns["status"][index] = STATUSES.index(Status.COMPLETE)

@@ -39,8 +39,8 @@ class Paths:
     b: np.ndarray  #: (d)
     line: Line
     turned: np.ndarray  #: (d) whether the path is followed from its last state to its first
-    targets: np.ndarray  #: (d, N, 2) dimensionless
-    state: Unknowns  #: (d, N, m) and (d, N, 2)
+    targets: np.ndarray  #: (d, N, l) dimensionless
+    state: Unknowns  #: (d, N, m) and (d, N, l)
     change: np.ndarray  #: (d, N) largest change of psi [rad] in the last Newton step
     good: np.ndarray  #: (d) whether every state was reached
 
@@ -52,7 +52,12 @@ class Paths:
     @property
     def which(self) -> np.ndarray:
         """Which rows hold."""
-        return rows_of(self.group.held, 2)[1]
+        return rows_of(self.group.held, self.loads)[1]
+
+    @property
+    def loads(self) -> int:
+        """How many loads are unknowns."""
+        return 3 if self.line.closes else 2
 
     def on(self, some: np.ndarray) -> Placed:
         """Some of the designs on the space, as many as a batch takes."""
@@ -75,16 +80,17 @@ def followed(pool: ThreadPoolExecutor, group: Group, line: Line, close: float, l
     turned = np.abs(group.wanted[:, -1, 1]) > np.abs(group.wanted[:, 0, 1])
     wanted = np.where(turned[:, None, None], group.wanted[:, ::-1], group.wanted)
     targets = np.moveaxis(padded(np.moveaxis(wanted, 1, 0)), 0, 1)  # few lengths are compiled
-    rows = targets.shape[1]
-    blank = Unknowns(np.zeros((count, rows, m)), np.zeros((count, rows, 2)))
+    rows, names = targets.shape[1], (*group.held, *(["closure"] if line.closes else []))
+    targets = np.concatenate([targets, np.zeros((count, rows, len(names) - 2))], axis=2)
+    blank = Unknowns(np.zeros((count, rows, m)), np.zeros((count, rows, len(names))))
     paths = Paths(group, np.zeros(count), line, turned, targets, blank, np.zeros((count, rows)), np.zeros(count, bool))
-    rest = np.tile([1.0 if group.held[0] == "length" else 0.0, 0.0], (size, 1))
+    rest = np.tile([1.0 if group.held[0] == "length" else 0.0, *[0.0] * (len(names) - 1)], (size, 1))
 
     def one(some: np.ndarray) -> None:
         paths.b[some] = _placement(group.take(some))
         on = paths.on(some)
         sizes = units(np.asarray(on.unit).T)
-        scaled = _filled(targets[some], size) / np.stack([sizes[name] for name in group.held], axis=1)[:, None]
+        scaled = _filled(targets[some], size) / np.stack([sizes[name] for name in names], axis=1)[:, None]
         path = march(line, on, paths.which, rest, scaled, np.asarray(n), np.asarray(limit))
         targets[some] = scaled[: len(some)]
         _put(paths.state, some, path.rows.state)

@@ -30,6 +30,8 @@ SECTOR = math.radians(100.0)
 """Angle that is cut out of a muscle which is cut open."""
 FITTING = 0.4
 """Length of the end fittings over R0. They are no part of the model."""
+SKIN = 0.02
+"""Thickness over R0 with which bellows are drawn whose wall is not told."""
 
 
 @attrs.frozen
@@ -48,7 +50,9 @@ class Body:
         tube, muscle = Tube.of(result, state), result.muscle
         wall = None
         if muscle.chamber is not None:
-            wall = float(muscle.chamber.wall_thickness) * result.column("stretch_thickness")[state]
+            thickness = muscle.chamber.wall_thickness
+            made = SKIN * tube.R0 if thickness is None else float(thickness)
+            wall = made * result.column("stretch_thickness")[state]
         return cls(tube, display_diameter(muscle), drawn_fibres(tube), wall, cut)
 
     @property

@@ -1,0 +1,196 @@
+"""Random muscles with random options: does any combination of effects give a wrong number?
+
+    python validation/random_options.py [--count 300] [--first 0] [--report-only]
+
+What must hold of every state, whatever is switched on: forces and volumes are the slopes of one potential, W = U - P V
+with dW = F dh - V dP; the error estimate covers the difference to a finer solution; a muscle that is turned around has
+the mirrored state; and the state stays where the force that was found is held. Results go line by line to
+out/random_options.jsonl; a run that was cut short goes on where it stopped. Writes validation/random_options.md.
+"""
+
+import argparse
+import os
+from pathlib import Path
+from typing import Any
+
+from environment import OUT
+from options import EACH, SEED, case_of, drawn
+from random_muscles import read, write_lines
+
+os.environ.setdefault("MCKIBBEN_COMPILE", "quick")
+
+import numpy as np
+
+import mckibben as mk
+from mckibben.solver.bench import Bench
+from mckibben.solver.equilibrium import Equilibrium
+from mckibben.solver.find import find
+from mckibben.solver.held import Held
+
+FILE, PAGE = OUT / "random_options.jsonl", Path(__file__).with_name("random_options.md")
+FINE = 64
+"""Half-length unknowns of the states that judge; their own error is told by the tail of their coefficients."""
+STEP = 1e-3
+"""Of lengths and pressures in differences, over the rest length and 1 bar; halved once and extrapolated."""
+SLOPES, MIRROR, BACK = 1e-6, 1e-7, 1e-7
+"""How far each check may be off, over |F| + pi R0^2 P for forces, and over the length or volume."""
+ROUNDING = 1e-10
+
+
+def one(case: dict[str, Any]) -> dict[str, Any]:
+    """All checks of one case; a crash is a finding, not the end of the run."""
+    try:
+        return {"case": case, "found": checked(case)}
+    except Exception as error:
+        return {"case": case, "found": {"verdict": "crash", "reason": repr(error)}}
+
+
+def checked(case: dict[str, Any]) -> dict[str, Any]:
+    """The state of a case by the default call, and by how much each check is off."""
+    muscle, length, pressure = case_of(case)
+    usual = mk.solve(muscle, length=length, pressure=pressure)
+    found: dict[str, Any] = {
+        "verdict": str(usual.verdict), "reason": usual.reason, "force": usual.force, "length": length,
+        "pressure": pressure, "estimate": float(usual.error_estimate), "shape": str(usual.data["shape"].values),
+    }  # fmt: skip
+    if usual.verdict != "stable" or usual.modes is None:
+        return found
+    bench, held = Bench.of(muscle), Held.of(length=length, pressure=pressure)
+    b = bench.placement(held)
+    fine = find(bench.problem(FINE, b), held)
+    found["fine"] = fine.converged
+    if not fine.converged:
+        return found
+    size = abs(usual.force) + np.pi * float(muscle.braid.radius) ** 2 * pressure
+    found["error"], found["tail"] = abs(usual.force - fine.force) / size, fine.tail
+    found["slope_length"] = abs(_slope(fine, held, 0) - fine.force) / size
+    found["slope_pressure"] = abs(_slope(fine, held, 1) + fine.volume) / fine.volume
+    if len(muscle.end_radii or ()) == 2:
+        turned = Bench.of(muscle.replace("end_radii", list((muscle.end_radii or ())[::-1])))
+        other = find(turned.problem(FINE, b), held)
+        found["mirror"] = max(abs(other.force - fine.force) / size, abs(other.volume / fine.volume - 1.0))
+    if usual.modes.force_control == 0:
+        back = find(fine.problem, Held.of(force=fine.force, pressure=pressure), fine, radius=0.1)
+        found["back"] = abs(back.length - length) / length if back.converged else float("inf")
+    return found
+
+
+def _slope(at: Equilibrium, held: Held, which: int) -> float:
+    """Slope of W by the length (0) or the pressure (1) on the same unknowns: central differences of two steps,
+    extrapolated; NaN where a state beside is not found."""
+
+    def potential(by: float) -> float:
+        values = list(held.values)
+        values[which] += by
+        state = find(at.problem, Held(held.names, tuple(values)), at, radius=0.1)
+        energy = float(state.totals[0] * at.problem.unit[0])
+        return energy - values[1] * state.volume if state.converged else float("nan")
+
+    step = STEP * (float(at.problem.p.rest) if which == 0 else 1e5)
+    wide, narrow = ((potential(by) - potential(-by)) / (2.0 * by) for by in (step, step / 2.0))
+    return (4.0 * narrow - wide) / 3.0
+
+
+CHECKS = {
+    "slope_length": ("dW/dh is the force", SLOPES),
+    "slope_pressure": ("-dW/dP is the volume", SLOPES),
+    "mirror": ("turned around, the mirrored state", MIRROR),
+    "back": ("held by its force, the same length", BACK),
+}
+
+
+def failures(row: dict[str, Any]) -> list[str]:
+    """What is wrong with a case, in words."""
+    found, said = row["found"], []
+    if found["verdict"] in ("crash", "not converged"):
+        said.append(f"{found['verdict']}: {found['reason']}")
+    if found["verdict"] == "stable" and not found.get("fine"):
+        said.append("no state on more unknowns")
+    if found.get("error", 0.0) > max(found["estimate"], found["tail"] ** 1.5, ROUNDING):
+        said.append(f"the error {found['error']:.1e} is above the estimate {found['estimate']:.1e}")
+    for name, (what, limit) in CHECKS.items():
+        off = found.get(name, 0.0)
+        if not np.isnan(off) and off > limit:
+            said.append(f"{what}: off by {off:.1e}")
+    return said
+
+
+def words(options: dict[str, Any]) -> str:
+    """Options in a line, without those that are off."""
+    said = [options["ends"], f"chamber {options['chamber']}"]
+    if options["chamber"] not in ("none", "bellows", "gap"):
+        said.append(options["law"])
+    said += [f"{options['radii']} end radii"] if options["radii"] else []
+    said += [name for name in ("stretch", "stiffening", "compliance", "dead") if options[name]]
+    said += ["pin"] if options["joint"] == "pin" else []
+    said += ["straight fibres"] if options["natural"] == "straight" else []
+    return ", ".join(said)
+
+
+def report(rows: list[dict[str, Any]]) -> None:
+    """The page."""
+    verdicts = [row["found"]["verdict"] for row in rows]
+    lines = [
+        "# Random muscles with random options",
+        "",
+        "Written by `python validation/random_options.py`. " + " ".join((__doc__ or "").split("\n\n")[2].split()),
+        "",
+        f"{len(rows)} muscles, {len({str(row['case']['options']) for row in rows})} combinations of options (one for "
+        f"{EACH} muscles each; seed {SEED}). Numbers as in `validation/sample.py`, options as in "
+        "`validation/options.py`; lengths from 0.75 of the rest length to 0.97 of full extension or of a fibre, "
+        "0 to 4 bar, one in ten without pressure.",
+        "",
+        "| verdict | muscles |",
+        "| --- | --- |",
+        *(f"| {name} | {verdicts.count(name)} |" for name in sorted(set(verdicts))),
+        "",
+        "| check | states | median | largest | allowed | beyond it |",
+        "| --- | --- | --- | --- | --- | --- |",
+    ]
+    errors = [row["found"] for row in rows if "error" in row["found"]]
+    ratio = np.array([one["error"] / max(one["estimate"], one["tail"] ** 1.5, ROUNDING) for one in errors])
+    lines.append(
+        f"| error over its estimate | {len(ratio)} | {np.median(ratio):.1e} | {ratio.max():.1e} | 1 | "
+        f"{int((ratio > 1.0).sum())} |"
+    )
+    for name, (what, limit) in CHECKS.items():
+        off = np.array([row["found"][name] for row in rows if name in row["found"]])
+        off = off[np.isfinite(off)]
+        if len(off):
+            beyond = int((off > limit).sum())
+            lines.append(f"| {what} | {len(off)} | {np.median(off):.1e} | {off.max():.1e} | {limit:.0e} | {beyond} |")
+    on: dict[str, int] = {}
+    for row in rows:
+        for word in words(row["case"]["options"]).split(", "):
+            on[word] = on.get(word, 0) + 1
+    lines += ["", "How often each option was there: " + ", ".join(f"{k} {n}" for k, n in sorted(on.items())) + "."]
+    bad = [(row, failures(row)) for row in rows if failures(row)]
+    lines += ["", f"{len(bad)} muscles with a check that failed."]
+    if bad:
+        lines += [
+            "",
+            "| case | options | length (mm) | pressure (bar) | what failed |",
+            "| --- | --- | --- | --- | --- |",
+        ]
+        for row, said in bad:
+            found = row["found"]
+            place = f"{1e3 * found.get('length', np.nan):.4g} | {1e-5 * found.get('pressure', np.nan):.4g}"
+            lines.append(f"| {row['case']['id']} | {words(row['case']['options'])} | {place} | {'; '.join(said)} |")
+    PAGE.write_text("\n".join(lines) + "\n", encoding="utf-8")
+
+
+def main() -> None:
+    parser = argparse.ArgumentParser(description=(__doc__ or "").splitlines()[0])
+    parser.add_argument("--count", type=int, default=300)
+    parser.add_argument("--first", type=int, default=0)
+    parser.add_argument("--workers", type=int, default=1)
+    parser.add_argument("--report-only", action="store_true")
+    asked = parser.parse_args()
+    if not asked.report_only:
+        OUT.mkdir(exist_ok=True)
+        write_lines(one, [drawn(k) for k in range(asked.first, asked.first + asked.count)], FILE, asked.workers)
+    report([row for _, row in sorted(read(FILE).items())])
+
+
+if __name__ == "__main__":
+    main()
