@@ -1,0 +1,153 @@
+// The page put together: what changes is looked at, and what is seen follows.
+
+import "uplot/dist/uPlot.min.css";
+import "./page.css";
+import { Bench } from "./bench.js";
+import { at, el } from "./dom.js";
+import { downloads, uploads } from "./files.js";
+import { Form } from "./form.js";
+import { clear, notice } from "./notices.js";
+import { ForcePlot } from "./plot.js";
+import { RangePlot } from "./range.js";
+import { held, keep, sharing } from "./share.js";
+import { Line, Newest } from "./socket.js";
+import { Stage } from "./stage.js";
+import { Store } from "./store.js";
+import { cautions, energies, numbers, verdict } from "./verdict.js";
+
+const line = new Line();
+const store = new Store();
+const stage = new Stage();
+const bench = new Bench(store);
+const form = new Form(store, choose);
+const force = new ForcePlot((contraction, settled) => store.change({ hold: "contraction", value: contraction }, settled));
+const range = new RangePlot(line, store);
+const looks = new Newest(look);
+let levels = null;
+let point = null;
+
+// Once the browser has painted, the time from the input is a measure that benchmarks read.
+function painted(name, since) {
+  requestAnimationFrame(() => setTimeout(() => performance.measure(name, { start: since })));
+}
+
+async function look({ asked, since }) {
+  const slow = setTimeout(() => verdict("working", "working: the state is sought"), 400);
+  try {
+    const told = await line.ask("look", asked, (part, data) => {
+      clearTimeout(slow);
+      if (part === "state") seen(data, since);
+      if (part === "preparing")
+        verdict("working", "working: this kind of muscle is new here, and is prepared once; that takes up to a minute");
+    });
+    levels = told.levels;
+    bench.reach(levels);
+    force.show(levels, point);
+    painted("input to picture", since);
+  } catch (error) {
+    if (error.kind === "error") impossible(error.message);
+    else if (error.kind === "busy") verdict("working", `working: ${error.message}`);
+    if (error.kind === "busy") setTimeout(() => looks.wanted ?? looks.ask({ asked: store.asked(), since }), 1000);
+  } finally {
+    clearTimeout(slow);
+  }
+}
+
+function seen(state, since) {
+  point = state.good ? state.point : state.last;
+  bench.point = point;
+  verdict(state.verdict, state.said, state.drawn);
+  numbers(state.numbers);
+  energies(state.energy);
+  cautions(state.cautions);
+  stage.show(state.shape, !state.good);
+  range.move(point);
+  if (levels) force.show(levels, point);
+  painted("input to shape", since);
+}
+
+function impossible(message) {
+  verdict("impossible", message);
+  at("stage").classList.add("old");
+}
+
+store.addEventListener("change", ({ detail: { settled, opened } }) => {
+  const since = performance.now();
+  if (opened) {
+    form.build();
+    stage.fit();
+    pick();
+  }
+  form.show();
+  bench.show();
+  looks.ask({ asked: store.asked(), since });
+  range.follow();
+  at("undo").disabled = !store.past.length;
+  at("redo").disabled = !store.future.length;
+  if (settled) keep(store);
+});
+
+function pick() {
+  const name = store.now.told.from.preset ?? "";
+  at("preset").value = name;
+  if (at("preset").value !== name || !name) at("preset").value = "";
+}
+
+async function open(muscle, bench) {
+  try {
+    store.open(await line.ask("open", muscle), bench);
+  } catch (error) {
+    notice(`The muscle was not opened: ${error.message}`, "wrong");
+    return false;
+  }
+  return true;
+}
+
+// Another choice makes another kind of muscle, with other numbers: it is opened anew, pressure and load stay.
+async function choose(name, value) {
+  const { pressure, hold, value: amount } = store.now;
+  const said = store.muscle();
+  const done = await open({ ...said, changes: { ...said.changes, [name]: value } }, { pressure, hold, value: amount });
+  if (!done) form.show();
+}
+
+async function begin() {
+  const { presets, start } = await (await fetch("start")).json();
+  at("preset").append(el("option", { value: "", text: "another" }),
+    ...presets.map(({ name, about }) => el("option", { value: name, text: name, title: about })));
+  at("preset").addEventListener("change", () => at("preset").value && open({ from: { preset: at("preset").value } }));
+  if (!(await fromLink())) await open(start);
+}
+
+// The muscle of the address line; false where it holds none, or one that cannot be.
+async function fromLink() {
+  try {
+    const asked = held();
+    return asked ? await open(asked.muscle, asked) : false;
+  } catch (error) {
+    notice(error.message, "wrong");
+    return false;
+  }
+}
+
+downloads(store);
+sharing(store);
+uploads((told) => store.open(told));
+at("undo").addEventListener("click", () => store.undo());
+at("redo").addEventListener("click", () => store.redo());
+addEventListener("hashchange", fromLink);
+addEventListener("keydown", (event) => {
+  if (!(event.ctrlKey || event.metaKey) || event.target.matches("input[type=text]")) return;
+  const back = event.key === "z" && !event.shiftKey;
+  const again = event.key === "y" || (event.key.toLowerCase() === "z" && event.shiftKey);
+  if (back) store.undo();
+  if (again) store.redo();
+  if (back || again) event.preventDefault();
+});
+line.addEventListener("open", () => {
+  clear("lost");
+  if (store.now) looks.ask({ asked: store.asked(), since: performance.now() });
+  else begin();
+});
+line.addEventListener("lost", () => notice("The connection to mckibben serve was lost; it is tried again.", "lost"));
+line.addEventListener("refused", ({ detail }) => notice(detail, "wrong"));
