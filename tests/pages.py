@@ -8,8 +8,9 @@ from typing import Any
 from starlette.testclient import TestClient
 
 from mckibben.page.gate import Gate
+from mckibben.page.held import Page
 from mckibben.page.pool import Tell
-from mckibben.page.server import Page, application
+from mckibben.page.server import application
 from mckibben.page.tasks import perform
 
 HOST = "127.0.0.1:8765"

@@ -14,8 +14,8 @@ from starlette.websockets import WebSocketDisconnect
 
 import mckibben as mk
 from mckibben.page.curves import pressures_with
-from mckibben.page.server import CASE
 from mckibben.page.session import LONGEST
+from mckibben.page.transfers import CASE
 
 pytestmark = pytest.mark.page
 

@@ -9,7 +9,7 @@ export function el(tag, given = {}, ...children) {
     else if (name === "value") made.value = value;
     else made.setAttribute(name, value === true ? "" : value);
   }
-  made.append(...children.filter((child) => child !== null && child !== undefined));
+  made.append(...children.filter((child) => child !== null && child !== undefined && child !== false));
   return made;
 }
 
@@ -25,7 +25,7 @@ export const at = (id) => document.getElementById(id);
 // A table with a head; columns after the first hold numbers.
 export function table(caption, heads, rows) {
   return el("table", {},
-    el("caption", { text: caption }),
+    caption ? el("caption", { text: caption }) : null,
     el("thead", {}, el("tr", {}, ...heads.map((head) => el("th", { scope: "col", text: head })))),
     el("tbody", {}, ...rows.map((row) => el("tr", {}, ...row.map((cell, k) =>
       k ? el("td", { text: cell }) : el("th", { scope: "row", text: cell }))))));

@@ -1,6 +1,7 @@
 // Files in and out: case files that are opened, and what is downloaded.
 
 import { at, el } from "./dom.js";
+import { menu } from "./menu.js";
 import { notice } from "./notices.js";
 
 const MOST = 2e6;
@@ -9,7 +10,7 @@ const KINDS = {
   pdf: "Datasheet (PDF)", glb: "Shape (glTF)",
 };
 
-async function answered(response) {
+export async function answered(response) {
   if (response.ok) return response;
   const said = await response.json().catch(() => ({}));
   throw new Error(said.error ?? `the server said ${response.status}`);
@@ -45,19 +46,7 @@ async function download(kind, store) {
 }
 
 export function downloads(store) {
-  const menu = at("downloads");
-  menu.querySelector("ul").append(...Object.entries(KINDS).map(([kind, words]) => el("li", {},
-    el("button", { type: "button", text: words, "data-kind": kind, on: { click: () => {
-      menu.open = false;
-      menu.querySelector("summary").focus();
-      download(kind, store);
-    } } }))));
-  menu.addEventListener("keydown", (event) => {
-    if (event.key !== "Escape") return;
-    menu.open = false;
-    menu.querySelector("summary").focus();
-  });
-  document.addEventListener("click", (event) => menu.contains(event.target) || (menu.open = false));
+  menu("downloads", Object.entries(KINDS).map(([kind, words]) => [words, () => download(kind, store), kind]));
 }
 
 export function uploads(opened) {

@@ -6,13 +6,16 @@ import { Bench } from "./bench.js";
 import { at, el } from "./dom.js";
 import { downloads, uploads } from "./files.js";
 import { Form } from "./form.js";
+import { Measured } from "./measured.js";
 import { clear, notice } from "./notices.js";
 import { ForcePlot } from "./plot.js";
 import { RangePlot } from "./range.js";
+import { Second } from "./second.js";
 import { held, keep, sharing } from "./share.js";
 import { Line, Newest } from "./socket.js";
 import { Stage } from "./stage.js";
 import { Store } from "./store.js";
+import { studies } from "./studies.js";
 import { cautions, energies, numbers, verdict } from "./verdict.js";
 
 const line = new Line();
@@ -23,8 +26,23 @@ const form = new Form(store, choose);
 const force = new ForcePlot((contraction, settled) => store.change({ hold: "contraction", value: contraction }, settled));
 const range = new RangePlot(line, store);
 const looks = new Newest(look);
+const over = { measured: [], second: [] };
+const measured = new Measured(line, store, (extras) => lay("measured", extras));
+const second = new Second(line, store, (extras) => lay("second", extras), (rows) => {
+  others = rows;
+  numbers(own, others);
+});
 let levels = null;
 let point = null;
+let own = [];
+let others = null;
+let rested = 0;
+
+// What lies over the curves beside their own point.
+function lay(name, extras) {
+  over[name] = extras;
+  force.add([...over.measured, ...over.second]);
+}
 
 // Once the browser has painted, the time from the input is a measure that benchmarks read.
 function painted(name, since) {
@@ -32,13 +50,13 @@ function painted(name, since) {
 }
 
 async function look({ asked, since }) {
-  const slow = setTimeout(() => verdict("working", "working: the state is sought"), 400);
+  const slow = setTimeout(() => verdict("working", "the state is sought"), 400);
   try {
     const told = await line.ask("look", asked, (part, data) => {
       clearTimeout(slow);
       if (part === "state") seen(data, since);
       if (part === "preparing")
-        verdict("working", "working: this kind of muscle is new here, and is prepared once; that takes up to a minute");
+        verdict("working", "this kind of muscle is new here, and is prepared once; that takes up to a minute");
     });
     levels = told.levels;
     bench.reach(levels);
@@ -46,7 +64,7 @@ async function look({ asked, since }) {
     painted("input to picture", since);
   } catch (error) {
     if (error.kind === "error") impossible(error.message);
-    else if (error.kind === "busy") verdict("working", `working: ${error.message}`);
+    else if (error.kind === "busy") verdict("working", error.message);
     if (error.kind === "busy") setTimeout(() => looks.wanted ?? looks.ask({ asked: store.asked(), since }), 1000);
   } finally {
     clearTimeout(slow);
@@ -57,10 +75,11 @@ function seen(state, since) {
   point = state.good ? state.point : state.last;
   bench.point = point;
   verdict(state.verdict, state.said, state.drawn);
-  numbers(state.numbers);
+  own = state.numbers;
+  numbers(own, others);
   energies(state.energy);
   cautions(state.cautions);
-  stage.show(state.shape, !state.good);
+  stage.show(state.shape, state.good ? "" : state.last ? "Last good state" : "As made");
   range.move(point);
   if (levels) force.show(levels, point);
   painted("input to shape", since);
@@ -82,6 +101,9 @@ store.addEventListener("change", ({ detail: { settled, opened } }) => {
   bench.show();
   looks.ask({ asked: store.asked(), since });
   range.follow();
+  second.follow();
+  clearTimeout(rested);
+  rested = setTimeout(() => measured.follow(), settled ? 0 : 300);
   at("undo").disabled = !store.past.length;
   at("redo").disabled = !store.future.length;
   if (settled) keep(store);
@@ -131,6 +153,7 @@ async function fromLink() {
 }
 
 downloads(store);
+studies(line, store, measured);
 sharing(store);
 uploads((told) => store.open(told));
 at("undo").addEventListener("click", () => store.undo());

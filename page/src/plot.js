@@ -1,53 +1,19 @@
 // Force against contraction for a family of pressures, the working point on it. Dragging on it moves the point.
 
 import uPlot from "uplot";
+import { axis, Chart, ring } from "./chart.js";
 import { at, table } from "./dom.js";
 import { digits, said, shown } from "./format.js";
-import { colour, onTheme } from "./theme.js";
+import { colour } from "./theme.js";
 
 const FAMILY = ["family1", "family2", "family3", "family4"];
-
-export function axis(label, size) {
-  return {
-    label, size, labelSize: 20, labelGap: 0, gap: 4, stroke: colour("quiet"), font: "12px system-ui, sans-serif",
-    labelFont: "12px system-ui, sans-serif", grid: { stroke: colour("grid"), width: 1 }, ticks: { show: false },
-    values: (_, splits) => splits.map((value) => (value === null ? "" : String(value).replace("-", "−"))),
-  };
-}
-
-// A plot that fills its place, and is made anew when size or colours change.
-export class Chart {
-  constructor(id, height, options) {
-    Object.assign(this, { place: at(id), height, options, data: null, plot: null, key: "" });
-    new ResizeObserver(() => this.resize()).observe(this.place);
-    onTheme(() => this.renew());
-  }
-
-  show(data, key) {
-    this.data = data;
-    if (!this.plot || key !== this.key) this.renew(key);
-    else this.plot.setData(data);
-  }
-
-  renew(key = this.key) {
-    this.key = key;
-    this.plot?.destroy();
-    if (!this.data) return;
-    const width = Math.max(this.place.clientWidth, 200);
-    this.plot = new uPlot({ width, height: this.height, ...this.options() }, this.data, this.place);
-  }
-
-  resize() {
-    const width = Math.max(this.place.clientWidth, 200);
-    if (this.plot && width !== this.plot.width) this.plot.setSize({ width, height: this.height });
-  }
-}
 
 export class ForcePlot {
   // `moved(contraction, settled)` is called as the point is dragged.
   constructor(moved) {
     this.moved = moved;
     this.levels = [];
+    this.extras = [];
     this.chart = new Chart("force", 280, () => this.options());
     at("force").setAttribute("role", "img");
   }
@@ -57,13 +23,13 @@ export class ForcePlot {
       label: said(level.pressure, "Pa", 3), stroke: colour(level.present ? "accent" : FAMILY[k]),
       width: level.present ? 3 : 1.5, points: { show: false },
     }));
-    const point = {
-      label: "state", stroke: colour("point"), width: 0, paths: () => null,
-      points: { show: true, size: 12, width: 2, fill: colour("panel"), stroke: colour("point") },
-    };
+    const more = this.extras.map(({ name, hue, dots, dash }) => ({
+      label: name, stroke: colour(hue), width: dots ? 0 : 2, dash, paths: dots ? () => null : undefined,
+      points: { show: Boolean(dots), size: 5, width: 1.2, fill: "transparent", stroke: colour(hue) },
+    }));
     return {
-      series: [{ label: "contraction" }, ...lines, point],
-      scales: { x: { time: false, range: (_, low, high) => [low - 0.2 * (high - low), high + 0.08 * (high - low)] }, y: { range: (_, low, high) => padded(Math.min(low, 0), high) } },
+      series: [{ label: "contraction" }, ...lines, ...more, ring("state")],
+      scales: { x: { time: false, range: (_, low, high) => [low - 0.26 * (high - low), high + 0.08 * (high - low)] }, y: { range: (_, low, high) => padded(Math.min(low, 0), high) } },
       axes: [axis("Contraction [%]", 28), axis("Force [N]", 50)],
       legend: { show: false },
       cursor: { show: true, x: false, y: false, drag: { x: false, y: false }, points: { show: false } },
@@ -104,21 +70,32 @@ export class ForcePlot {
       while (taken.some((other) => Math.abs(other - y) < 13 * ratio)) y -= ratio;
       taken.push(y);
       ctx.fillStyle = colour(level.present ? "accent" : FAMILY[k]);
+      ctx.lineWidth = 4 * ratio;
+      ctx.strokeStyle = colour("panel");
+      ctx.strokeText(text, x, y);
       ctx.fillText(text, x, y);
     }
     ctx.restore();
   }
 
+  // Further lines and points: measured ones, those of a second muscle. Each has a name, a hue, x and y in SI.
+  add(extras) {
+    this.extras = extras;
+    if (this.levels.length) this.show(this.levels, this.point);
+  }
+
   show(levels, point) {
     this.levels = levels;
+    this.point = point;
     const tables = levels.map((level) => [
       level.contraction.map((value) => (value === null ? null : shown(value, "contraction"))),
       level.force.map((value, k) => (level.good[k] ? value : null)),
     ]).map(risen);
+    for (const one of this.extras) tables.push(risen([one.x.map((value) => (value === null ? null : shown(value, "contraction"))), one.y]));
     const known = point && point.contraction !== null && point.force !== null;
     tables.push(known ? [[shown(point.contraction, "contraction")], [point.force]] : [[tables[0][0][0] ?? 0], [null]]);
     const data = uPlot.join(tables, tables.map((one) => one.slice(1).map(() => 1)));
-    this.chart.show(data, levels.map((level) => `${level.pressure}${level.present}`).join());
+    this.chart.show(data, [...levels.map((level) => `${level.pressure}${level.present}`), ...this.extras.map((one) => one.name)].join());
     at("force").setAttribute("aria-label", this.told(levels.find((level) => level.present), point));
     at("force-table").replaceChildren(table("Blocked force and free contraction", ["Pressure", "Blocked force", "Free contraction"],
       levels.map((level) => [said(level.pressure, "Pa", 3), said(level.blocked.value, "N"), said(level.free.value, "contraction")])));

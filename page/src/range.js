@@ -1,8 +1,8 @@
 // The working range: between which lengths the muscle can be held, over the pressure. It is found when all is at rest.
 
+import { axis, Chart, ring } from "./chart.js";
 import { at, table } from "./dom.js";
 import { said, shown } from "./format.js";
-import { axis, Chart } from "./plot.js";
 import { colour } from "./theme.js";
 
 const LEVELS = 5;
@@ -20,8 +20,7 @@ export class RangePlot {
     return {
       series: [{ label: "pressure" }, border("longest"), border("shortest"),
         { label: "as made", stroke: colour("quiet"), width: 1, dash: [5, 5], points: { show: false } },
-        { label: "state", stroke: colour("point"), width: 0, paths: () => null,
-          points: { show: true, size: 12, width: 2, fill: colour("panel"), stroke: colour("point") } }],
+        ring("state")],
       bands: [{ series: [1, 2], fill: colour("band") }],
       scales: { x: { time: false, range: (_, low, high) => [low, high === low ? low + 1 : high + 0.05 * (high - low)] },
         y: { range: (_, low, high) => [0, 1.08 * high] } },

@@ -76,7 +76,7 @@ export class Slider {
   typed() {
     const text = this.field.value.trim().replace("−", "-").replace(",", ".");
     const value = Number(text);
-    const wrong = text === "" || !Number.isFinite(value) || (this.about.whole && !Number.isInteger(value));
+    const wrong = text === "" || !Number.isFinite(value) || (this.about.whole === true && !Number.isInteger(value));
     this.field.classList.toggle("wrong", wrong);
     this.field.toggleAttribute("aria-invalid", wrong);
     if (wrong || value === this.value) return;

@@ -9,23 +9,25 @@ import { colour, css, mapped, niceAbove } from "./theme.js";
 const KEYS = "Arrow keys turn it, plus and minus bring it nearer or farther, Home puts it back.";
 
 export class Stage {
-  constructor() {
-    const canvas = el("canvas", { tabindex: 0, role: "img", "aria-label": "Shape of the muscle" });
-    at("stage").append(canvas);
+  constructor(name = "") {
+    this.place = at(`stage${name}`);
+    this.name = name ? "Second muscle" : "Shape of the muscle";
+    const canvas = el("canvas", { tabindex: 0, role: "img", "aria-label": this.name });
+    this.place.append(canvas);
     this.canvas = canvas;
     try {
       this.view = new Shape3D(canvas);
     } catch {
       canvas.remove();
-      at("stage").setAttribute("role", "img");
-      this.canvas = at("stage");
-      this.view = new Flat(at("stage"));
+      this.place.setAttribute("role", "img");
+      this.canvas = this.place;
+      this.view = new Flat(this.place);
     }
     this.flat = this.view instanceof Flat;
     const said = this.flat ? "Drawn flat: this browser has no WebGL." : "Drag to turn.";
     this.note = el("p", { class: "quiet note" });
     this.hint = said;
-    at("scale").append(this.note, this.bar());
+    at(`scale${name}`).append(this.note, this.bar());
   }
 
   bar() {
@@ -60,9 +62,9 @@ export class Stage {
     const tint = tension ? (place) => mapped((between(tension, place) - least) / (high_ - least)) : () => plain;
     this.view.show(shape, tint, this.wide, this.tall);
     const size = `${digits(1e3 * (shape.z.at(-1) - shape.z[0]))} mm long, ${digits(2e3 * Math.max(...shape.r))} mm wide`;
-    this.note.textContent = `${old ? "Last good state, " : ""}${size}. ${this.hint}`;
-    this.canvas.setAttribute("aria-label", `Shape of the muscle, ${size}.${this.flat ? "" : ` ${KEYS}`}`);
-    at("stage").classList.toggle("old", old);
+    this.note.textContent = `${old ? `${old}, ` : ""}${size}. ${this.hint}`;
+    this.canvas.setAttribute("aria-label", `${this.name}, ${size}.${this.flat ? "" : ` ${KEYS}`}`);
+    this.place.classList.toggle("old", old !== "");
   }
 }
 

@@ -1,6 +1,6 @@
 // The verdict in words, the numbers of the state, its energies, its cautions.
 
-import { at, el, svg } from "./dom.js";
+import { at, el, svg, table } from "./dom.js";
 import { digits, said } from "./format.js";
 
 const MARKS = {
@@ -16,18 +16,27 @@ const HUES = ["e1", "e2", "e3", "e4", "e5", "e6", "e7"];
 
 export function verdict(word, sentence, more = "") {
   const [mark, kind] = MARKS[word];
-  const line = sentence.startsWith(word) ? sentence.slice(word.length).replace(/^[:\s]+/, "") : sentence;
   at("verdict").className = kind;
   at("verdict").replaceChildren(
     el("span", { class: "badge", "aria-hidden": "true", text: mark }),
-    el("div", {}, el("p", {}, el("strong", { text: WORDS[word] }), word in { working: 1, impossible: 1 } ? "" : ` (${word})`,
-      line ? `: ${line}` : ""), more ? el("p", { class: "more", text: more }) : null));
+    el("div", {}, el("p", {}, el("strong", { text: `${WORDS[word]}. ` }), sentenced(sentence)),
+      more ? el("p", { class: "more", text: more }) : null));
 }
 
-export function numbers(rows) {
-  at("numbers").replaceChildren(el("dl", {}, ...rows.flatMap(([name, value, unit]) => [
-    el("dt", { text: name }), el("dd", { text: `${value.replace("-", "−")} ${unit}`.trim() }),
-  ])));
+// With a capital at its beginning and a full stop at its end; names of fields stay as they are.
+function sentenced(text) {
+  const head = /^\w+\.\w/.test(text) ? text.charAt(0) : text.charAt(0).toUpperCase();
+  return head + text.slice(1) + (/[.!?]$/.test(text) ? "" : ".");
+}
+
+// The numbers of the state, beside them those of a second muscle where there is one.
+export function numbers(rows, others = null) {
+  if (!rows.length) return void at("numbers").replaceChildren(el("p", { class: "quiet", text: "No numbers: there is no such state." }));
+  const text = (row) => (row ? `${row[1].replace("-", "−")} ${row[2]}`.trim() : "–");
+  if (!others) return void at("numbers").replaceChildren(el("dl", {}, ...rows.flatMap((row) => [
+    el("dt", { text: row[0] }), el("dd", { text: text(row) })])));
+  const second = new Map(others.map((row) => [row[0], row]));
+  at("numbers").replaceChildren(table("", ["", "this muscle", "second"], rows.map((row) => [row[0], text(row), text(second.get(row[0]))])));
 }
 
 export function cautions(lines) {
@@ -37,6 +46,7 @@ export function cautions(lines) {
 
 // Parts of the stored energy as one bar, and a legend with numbers.
 export function energies(parts) {
+  if (!parts.length) return void at("energy").replaceChildren(el("p", { class: "quiet", text: "Not known." }));
   const total = parts.reduce((sum, part) => sum + part.value, 0);
   const share = (value) => (total > 0 ? Math.max(value, 0) / total : 0);
   let from = 0;

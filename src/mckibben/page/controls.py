@@ -24,7 +24,8 @@ LABELS = {
     "chamber.outer_diameter": "Outer diameter", "chamber.inner_diameter": "Inner diameter",
     "chamber.length": "Length of the tube", "chamber.law.lambda_m": "Locking stretch",
     "fittings.compliance": "Compliance", "fittings.dead_length": "Dead length", "friction.coefficient": "Friction",
-    "friction.arm": "Arm of friction", "ends": "Ends", "braid.joint": "Crossings", "braid.fibre.stretch": "Fibres",
+    "friction.arm": "Arm of friction", "ends": "Ends", "braid.joint": "Crossings",
+    "braid.fibre.stretch": "Fibres stretch",
     "chamber.lies": "Wall lies", "chamber.wall": "Wall taken as", "chamber.gap": "Gap to the braid",
 }  # fmt: skip
 """Names of fields for people; others go by their own."""
@@ -35,7 +36,7 @@ GROUPS = {
 """Names of the parts of a muscle."""
 CHOICES = ("ends", "braid.joint", "braid.fibre.stretch", "chamber.lies", "chamber.wall", "chamber.gap")
 """What can be switched on a page."""
-SWITCHED = {"braid.fibre.stretch": ("do not stretch", "stretch"), "chamber.gap": ("none", "may open")}
+SWITCHED = {"braid.fibre.stretch": ("no", "yes"), "chamber.gap": ("none", "may open")}
 """Words for off and on."""
 UNSAID = {"chamber.lies": "outside", "chamber.wall": "thin"}
 """What holds where a choice is left out."""

@@ -62,7 +62,8 @@ def serve(
         try:
             import uvicorn
 
-            from mckibben.page.server import Page, application
+            from mckibben.page.held import Page
+            from mckibben.page.server import application
         except ImportError as error:
             said = f"the page takes {error.name}, which is not installed"
             raise SpecError("serve", allowed=said, advice='pip install "mckibben[web]"') from error

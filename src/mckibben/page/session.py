@@ -15,7 +15,7 @@ __all__ = ["LONGEST", "RubbishError", "Session", "read"]
 
 LONGEST = 100_000
 """Characters of a message at most; a muscle has some thousand."""
-AT_ONCE = 3
+AT_ONCE = 6
 """Tasks of one browser under way at the same time, beside its look."""
 LOOK = "look"
 

@@ -77,7 +77,42 @@ def _file(said: Mapping[str, Any], tell: Any) -> Any:
     return written(said["kind"], said["asked"], said["folder"])
 
 
+def _data(said: Mapping[str, Any], tell: Any) -> Any:
+    from mckibben.page.measured import data_of, described
+
+    return described(data_of(said), said["name"])
+
+
+def _measured(said: Mapping[str, Any], tell: Any) -> Any:
+    from mckibben.page.asked import asked_of
+    from mckibben.page.measured import data_of, measured
+
+    return measured(asked_of(said), data_of(said), said["name"])
+
+
+def _effects(said: Mapping[str, Any], tell: Any) -> Any:
+    from mckibben.page.asked import asked_of
+    from mckibben.page.jobs import effects_of
+
+    return effects_of(asked_of(said), tell)
+
+
+def _fit(said: Mapping[str, Any], tell: Any) -> Any:
+    from mckibben.page.asked import asked_of
+    from mckibben.page.jobs import fitted
+
+    return fitted(asked_of(said), said, tell)
+
+
+def _design(said: Mapping[str, Any], tell: Any) -> Any:
+    from mckibben.page.asked import asked_of
+    from mckibben.page.wanted import designed
+
+    return designed(asked_of(said), said, tell)
+
+
 TASKS: dict[str, Callable[[Mapping[str, Any], Callable[[str, Any], None]], Any]] = {
     "open": _open, "case": _case, "look": lambda said, tell: _seen("look", said),
     "curves": lambda said, tell: _seen("curves", said), "reach": _reach, "file": _file,
+    "data": _data, "measured": _measured, "effects": _effects, "fit": _fit, "design": _design,
 }  # fmt: skip
