@@ -47,6 +47,8 @@ await build({
   logLevel: "warning",
 });
 for (const name of readdirSync(join(here, "static"))) copyFileSync(join(here, "static", name), join(out, name));
+// The accessibility checker of the tests stays here; it does not ship.
+copyFileSync(join(here, "node_modules", "axe-core", "axe.min.js"), join(here, "axe.min.js"));
 const notices = used.map((name) => {
   const text = readFileSync(join(here, "node_modules", name, "LICENSE"), "utf8").trim();
   return `${name} ${about[name].version}\n${"-".repeat(40)}\n${text}\n`;

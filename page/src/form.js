@@ -44,7 +44,8 @@ export class Form {
       ...one.options.map(([, word]) => el("option", { text: word })));
     this.selects.set(one.name, { select, one });
     return el("div", { class: "choice", title: one.meaning },
-      el("label", { for: id }, one.label, one.assumed ? el("span", { class: "mark", text: "assumed" }) : null), select);
+      el("span", { class: "name" }, el("label", { for: id, text: one.label }),
+        one.assumed ? el("span", { class: "mark", text: "assumed" }) : null), select);
   }
 
   show() {

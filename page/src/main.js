@@ -50,6 +50,7 @@ function painted(name, since) {
 }
 
 async function look({ asked, since }) {
+  document.body.dataset.busy = true;
   const slow = setTimeout(() => verdict("working", "the state is sought"), 400);
   try {
     const told = await line.ask("look", asked, (part, data) => {
@@ -68,6 +69,7 @@ async function look({ asked, since }) {
     if (error.kind === "busy") setTimeout(() => looks.wanted ?? looks.ask({ asked: store.asked(), since }), 1000);
   } finally {
     clearTimeout(slow);
+    document.body.dataset.busy = looks.wanted !== null;
   }
 }
 

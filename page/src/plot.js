@@ -16,6 +16,7 @@ export class ForcePlot {
     this.extras = [];
     this.chart = new Chart("force", 280, () => this.options());
     at("force").setAttribute("role", "img");
+    at("force").setAttribute("aria-label", "Force against contraction, not known yet.");
   }
 
   options() {

@@ -13,6 +13,7 @@ export class RangePlot {
     Object.assign(this, { line, store, found: [], point: null, key: "", run: 0 });
     this.chart = new Chart("range", 210, () => this.options());
     at("range").setAttribute("role", "img");
+    at("range").setAttribute("aria-label", "Working range over the pressure, not known yet.");
   }
 
   options() {

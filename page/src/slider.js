@@ -15,9 +15,10 @@ export class Slider {
     const hint = about.hint ? `${id}-hint` : undefined;
     this.range = el("input", { type: "range", id: `${id}-range`, "aria-label": this.named(), "aria-describedby": hint });
     this.field = el("input", { type: "text", inputmode: "decimal", id, size: 7, "aria-describedby": hint });
-    this.name = el("label", { for: id }, about.label, about.mark ? el("span", { class: "mark", text: about.mark }) : null);
+    this.name = el("label", { for: id }, about.label);
+    const name = el("span", { class: "name" }, this.name, about.mark ? el("span", { class: "mark", text: about.mark }) : null);
     this.unit = el("span", { class: "unit", text: about.unit });
-    this.root = el("div", { class: "slider" }, this.name, this.field, this.unit, this.range,
+    this.root = el("div", { class: "slider" }, name, this.field, this.unit, this.range,
       about.hint ? el("p", { class: "hint", id: hint, text: about.hint }) : null);
     this.limits(about.least, about.most);
     this.range.addEventListener("input", () => this.moved(false));
@@ -27,7 +28,7 @@ export class Slider {
   }
 
   named() {
-    return this.about.unit ? `${this.about.label}, in ${this.about.unit}` : this.about.label;
+    return this.about.unit ? `${this.about.label}, in ${this.about.unit}` : `${this.about.label}, by slider`;
   }
 
   rename(label, unit) {
