@@ -17,10 +17,11 @@ function meridian(shape, share) {
   return { r: at("r"), z: at("z"), nr: dz / size, nz: -dr / size, turn: at("turn"), place };
 }
 
-// Centre line of a fibre: over the others at every second crossing, under them between.
-function centre(shape, hand, share) {
+// Centre line of a fibre: over the others at every second crossing, under them between; where that is too fine to be
+// drawn, those of one hand lie over the others.
+function centre(shape, hand, share, weave) {
   const { r, z, nr, nz, turn, place } = meridian(shape, share);
-  const out = 0.5 * hand * shape.diameter * Math.cos(0.5 * shape.fibres * turn);
+  const out = 0.5 * hand * shape.diameter * (weave ? Math.cos(0.5 * shape.fibres * turn) : 0.5);
   const angle = hand * turn;
   const [c, s] = [Math.cos(angle), Math.sin(angle)];
   const radius = r + out * nr;
@@ -35,8 +36,8 @@ const unit = (a) => {
 };
 
 // A fibre as a round bar. `tint(place)` is its colour at a place of the meridian.
-export function fibre(shape, hand, samples, sides, tint) {
-  const line = Array.from({ length: samples }, (_, k) => centre(shape, hand, k / (samples - 1)));
+export function fibre(shape, hand, samples, sides, weave, tint) {
+  const line = Array.from({ length: samples }, (_, k) => centre(shape, hand, k / (samples - 1), weave));
   const count = samples * sides;
   const [position, normal, colour] = [0, 1, 2].map(() => new Float32Array(3 * count));
   line.forEach(({ point, normal: up, place }, k) => {
@@ -65,11 +66,12 @@ export function chamber(shape, around) {
   const [position, normal] = [0, 1].map(() => new Float32Array(3 * along * around));
   for (let k = 0; k < along; k++) {
     const { r, z, nr, nz } = meridian(shape, k / (along - 1));
-    const radius = Math.max(r - shape.diameter * nr, 0);
+    const under = 1.2 * shape.diameter;
+    const radius = Math.max(r - under * nr, 0);
     for (let j = 0; j < around; j++) {
       const angle = (2 * Math.PI * j) / around;
       const at = 3 * (k * around + j);
-      position.set([radius * Math.cos(angle), radius * Math.sin(angle), z - shape.diameter * nz], at);
+      position.set([radius * Math.cos(angle), radius * Math.sin(angle), z - under * nz], at);
       normal.set([nr * Math.cos(angle), nr * Math.sin(angle), nz], at);
     }
   }

@@ -37,6 +37,7 @@ let point = null;
 let own = [];
 let others = null;
 let rested = 0;
+let last = "";
 
 // What lies over the curves beside their own point.
 function lay(name, extras) {
@@ -51,21 +52,22 @@ function painted(name, since) {
 
 async function look({ asked, since }) {
   document.body.dataset.busy = true;
-  const slow = setTimeout(() => verdict("working", "the state is sought"), 400);
+  const slow = setTimeout(() => working("the state is sought"), 400);
   try {
     const told = await line.ask("look", asked, (part, data) => {
       clearTimeout(slow);
       if (part === "state") seen(data, since);
       if (part === "preparing")
-        verdict("working", "this kind of muscle is new here, and is prepared once; that takes up to a minute");
+        working("this kind of muscle is new here, and is prepared once; that takes up to a minute");
     });
     levels = told.levels;
     bench.reach(levels);
     force.show(levels, point);
     painted("input to picture", since);
   } catch (error) {
+    last = "";
     if (error.kind === "error") impossible(error.message);
-    else if (error.kind === "busy") verdict("working", error.message);
+    else if (error.kind === "busy") working(error.message);
     if (error.kind === "busy") setTimeout(() => looks.wanted ?? looks.ask({ asked: store.asked(), since }), 1000);
   } finally {
     clearTimeout(slow);
@@ -73,7 +75,14 @@ async function look({ asked, since }) {
   }
 }
 
+// What is shown is not what is asked for until the answer comes.
+function working(words) {
+  document.body.dataset.stale = true;
+  verdict("working", words);
+}
+
 function seen(state, since) {
+  document.body.dataset.stale = false;
   point = state.good ? state.point : state.last;
   bench.point = point;
   verdict(state.verdict, state.said, state.drawn);
@@ -83,11 +92,11 @@ function seen(state, since) {
   cautions(state.cautions);
   stage.show(state.shape, state.good ? "" : state.last ? "Last good state" : "As made");
   range.move(point);
-  if (levels) force.show(levels, point);
   painted("input to shape", since);
 }
 
 function impossible(message) {
+  document.body.dataset.stale = true;
   verdict("impossible", message);
   at("stage").classList.add("old");
 }
@@ -101,7 +110,10 @@ store.addEventListener("change", ({ detail: { settled, opened } }) => {
   }
   form.show();
   bench.show();
-  looks.ask({ asked: store.asked(), since });
+  const asked = store.asked();
+  const key = JSON.stringify(asked);
+  if (key !== last) looks.ask({ asked, since }); // letting go of a slider changes nothing
+  last = key;
   range.follow();
   second.follow();
   clearTimeout(rested);

@@ -30,7 +30,7 @@ export class ForcePlot {
     }));
     return {
       series: [{ label: "contraction" }, ...lines, ...more, ring("state")],
-      scales: { x: { time: false, range: (_, low, high) => [low - 0.26 * (high - low), high + 0.08 * (high - low)] }, y: { range: (_, low, high) => padded(Math.min(low, 0), high) } },
+      scales: { x: { time: false, range: (_, low, high) => [low - 0.34 * (high - low), high + 0.08 * (high - low)] }, y: { range: (_, low, high) => padded(Math.min(low, 0), high) } },
       axes: [axis("Contraction [%]", 28), axis("Force [N]", 50)],
       legend: { show: false },
       cursor: { show: true, x: false, y: false, drag: { x: false, y: false }, points: { show: false } },
@@ -65,7 +65,7 @@ export class ForcePlot {
     for (const [k, level] of this.levels.entries()) {
       const first = level.force.findIndex((value, j) => level.good[j] && value !== null);
       if (first < 0) continue;
-      const text = said(level.pressure, "Pa", 3);
+      const text = said(level.pressure, "Pa", 2);
       const x = plot.valToPos(shown(level.contraction[first], "contraction"), "x", true) - 6 * ratio;
       let y = plot.valToPos(level.force[first], "y", true);
       while (taken.some((other) => Math.abs(other - y) < 13 * ratio)) y -= ratio;

@@ -9,8 +9,10 @@ import { colour, onTheme } from "./theme.js";
 
 // How finely it is drawn, at most `budget` points of all fibres together: at rest, and while it moves where a
 // processor has to draw.
-const FINE = { samples: 161, sides: 6, around: 64, budget: 60_000, pixels: 2 };
-const COARSE = { samples: 61, sides: 3, around: 32, budget: 12_000, pixels: 0.75 };
+const FINE = { samples: 600, sides: 6, around: 64, budget: 120_000, pixels: 2 };
+const COARSE = { samples: 60, sides: 3, around: 32, budget: 9_000, pixels: 0.75 };
+const PER_WAVE = 4; // points along a fibre from over to over
+const CHORD = 0.2; // angle from point to point at most [rad], lest fibres cut into the chamber
 const REST = 350;
 const STEP = Math.PI / 36;
 
@@ -32,7 +34,7 @@ function buffer(parts) {
 export class Shape3D {
   constructor(canvas) {
     this.canvas = canvas;
-    this.renderer = new WebGLRenderer({ canvas, antialias: false, alpha: true, powerPreference: "low-power" });
+    this.renderer = new WebGLRenderer({ canvas, antialias: false, alpha: false, powerPreference: "low-power" });
     this.slow = isSlow(this.renderer);
     this.detail = null;
     this.scene = new Scene();
@@ -56,6 +58,7 @@ export class Shape3D {
   }
 
   paint() {
+    this.renderer.setClearColor(new Color(colour("back")));
     this.materials.chamber.color = new Color(colour("chamber"));
     this.materials.drum.color = new Color(colour("drum"));
     this.draw();
@@ -100,11 +103,14 @@ export class Shape3D {
     this.renderer.setPixelRatio(detail.pixels);
     this.resize();
     const count = Math.max(1, shape.fibres / 2);
+    const round = shape.turn.at(-1) - shape.turn[0];
     const share = detail.budget / (2 * count);
-    const sides = share > 40 * detail.sides ? detail.sides : 3;
-    const samples = Math.round(Math.min(detail.samples, Math.max(24, share / sides)));
+    const woven = Math.ceil((PER_WAVE * round * count) / (2 * Math.PI)) + 1; // points for over and under to be seen
+    const sides = share > woven * detail.sides ? detail.sides : 3;
+    const weave = woven <= Math.min(detail.samples, share / sides);
+    const samples = Math.max(weave ? woven : 0, Math.ceil(round / CHORD) + 1, 25);
     for (const hand of [1, -1]) {
-      const mesh = new InstancedMesh(buffer(fibre(shape, hand, samples, sides, this.tint)), this.materials.fibre, count);
+      const mesh = new InstancedMesh(buffer(fibre(shape, hand, samples, sides, weave, this.tint)), this.materials.fibre, count);
       for (let k = 0; k < count; k++) mesh.setMatrixAt(k, new Matrix4().makeRotationZ((2 * Math.PI * k) / count));
       mesh.frustumCulled = false;
       this.body.add(mesh);

@@ -17,7 +17,7 @@ export class Slider {
     this.field = el("input", { type: "text", inputmode: "decimal", id, size: 7, "aria-describedby": hint });
     this.name = el("label", { for: id }, about.label);
     const name = el("span", { class: "name" }, this.name, about.mark ? el("span", { class: "mark", text: about.mark }) : null);
-    this.unit = el("span", { class: "unit", text: about.unit });
+    this.unit = el("span", { class: "unit", text: about.unit.replace("^2", "²") });
     this.root = el("div", { class: "slider" }, name, this.field, this.unit, this.range,
       about.hint ? el("p", { class: "hint", id: hint, text: about.hint }) : null);
     this.limits(about.least, about.most);

@@ -8,7 +8,7 @@ from typing import Any
 from mckibben.page.asked import Asked
 from mckibben.page.plain import listed, number
 from mckibben.results.result import Result
-from mckibben.sheet.levels import Fact, Level, curve, ends, stable
+from mckibben.sheet.levels import Ends, Fact, Level, curve, ends, stable
 from mckibben.spec import Muscle
 
 __all__ = ["curves", "levels_at", "pressures_with"]
@@ -35,8 +35,13 @@ def pressures_with(present: float, top: float) -> tuple[float, ...]:
 
 def levels_at(muscle: Muscle, pressures: tuple[float, ...]) -> list[Level]:
     """The muscle at some rising pressures [Pa]."""
-    both = ends(muscle, pressures)
+    both = _ends(muscle, pressures)
     return [both.level(k, _curve(muscle, P, both.first, round(both.end(k), DIGITS))) for k, P in enumerate(pressures)]
+
+
+@lru_cache(maxsize=KEPT)
+def _ends(muscle: Muscle, pressures: tuple[float, ...]) -> Ends:
+    return ends(muscle, pressures)
 
 
 @lru_cache(maxsize=KEPT)
