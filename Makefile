@@ -14,7 +14,7 @@ endif
 STAMP := $(VENV)/.mckibben-installed
 
 .DEFAULT_GOAL := help
-.PHONY: help setup demo test lint types docs examples bench pictures tables notebook lock clean
+.PHONY: help setup demo test lint types docs examples bench pictures tables notebook page lock clean
 
 help:
 	@echo "make setup      the virtual environment $(VENV), from requirements.lock"
@@ -24,6 +24,7 @@ help:
 	@echo "make examples   every script of examples/;  make bench  the benchmarks, into out"
 	@echo "make pictures   the pictures of the README and the documentation, into docs/pictures"
 	@echo "make tables     the tables of docs/effects.md;  make notebook  the tutorial as a notebook, run, into out"
+	@echo "make page       the JavaScript of mckibben serve, bundled anew; it takes Node.js and npm"
 	@echo "make lock       renew requirements.lock from pyproject.toml;  make clean  delete what was built"
 
 setup: $(STAMP)
@@ -76,6 +77,11 @@ notebook: setup
 
 tables: setup
 	$(BIN)/python docs/effects.py
+
+# What is bundled is committed, so that nobody else needs Node.js. The lock names no addresses of a registry.
+page:
+	cd page && npm ci --ignore-scripts --no-audit --no-fund && node build.mjs
+	@echo "src/mckibben/page/assets"
 
 # Pins stay as they are unless pyproject.toml rules them out; UPGRADE=--upgrade takes the newest of everything.
 lock: setup

@@ -22,7 +22,7 @@ from mckibben.spec import presets
 HERE = Path(__file__).parent / "pictures"
 WIDEST = 1000
 """Pixels."""
-SHADED = ("fig5_energy_density", "fig6_stiff_fibres", "scene")
+SHADED = ("fig5_energy_density", "fig6_stiff_fibres", "scene", "page", "page_dark")
 """Pictures with colour scales, which a palette would falsify."""
 
 
@@ -66,6 +66,32 @@ def datasheet() -> None:
         shrink(made, HERE / made.name)
 
 
+def browser() -> None:
+    """The page of `mckibben serve`, in light and dark, where there is a Chromium."""
+    sys.path.insert(0, str(HERE.parent.parent / "tests"))
+    from browsers import CHROMIUM, FLAGS, Watched, served
+
+    if CHROMIUM is None:
+        print("docs/pictures/page.png stays: there is no Chromium")
+        return
+    from playwright.sync_api import sync_playwright
+
+    with served() as address, sync_playwright() as playwright, tempfile.TemporaryDirectory() as folder:
+        chromium = playwright.chromium.launch(executable_path=CHROMIUM, args=list(FLAGS))
+        for name, scheme in (("page", "light"), ("page_dark", "dark")):
+            seen = Watched(chromium.new_context(viewport={"width": 1366, "height": 860}, color_scheme=scheme), address)
+            tab = seen.open()
+            tab.get_by_label("a contraction").check()
+            tab.get_by_label("Contraction", exact=True).fill("-25")
+            tab.get_by_label("Contraction", exact=True).press("Enter")
+            seen.settled()
+            seen.until("!document.querySelector('#range').classList.contains('old')")
+            made = Path(folder) / f"{name}.png"
+            tab.screenshot(path=made)
+            shrink(made, HERE / made.name)
+        chromium.close()
+
+
 def spread() -> None:
     """The picture of tolerances in the recipes."""
     test = mk.Isometric(length="115 mm", pressure="1 bar")
@@ -91,6 +117,7 @@ if __name__ == "__main__":
     scene()
     datasheet()
     spread()
+    browser()
     if len(sys.argv) > 1:
         main(Path(sys.argv[1]))
     else:

@@ -14,8 +14,9 @@ from typer.testing import CliRunner
 
 import mckibben as mk
 from mckibben.app.cli import app
-from mckibben.sheet.facts import Fact, Facts, cautions_once, facts
+from mckibben.sheet.facts import Facts, cautions_once, facts
 from mckibben.sheet.html import html
+from mckibben.sheet.levels import Fact
 from mckibben.sheet.pdf import pdf
 from mckibben.sheet.pictures import curves, drawing, svg
 from mckibben.sheet.words import Page, page

@@ -59,6 +59,7 @@ _PUBLIC = {
     "mckibben.scatter.tolerances": ("tolerances",),
     "mckibben.results.tolerances": ("Tolerances",),
     "mckibben.sheet.datasheet": ("datasheet",),
+    "mckibben.page.serve": ("serve",),
     "mckibben.results.result": ("Result", "State"),
     "mckibben.data.read": ("read_data",),
     "mckibben.data.samples": ("sample_data",),

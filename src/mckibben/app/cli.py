@@ -21,6 +21,7 @@ from mckibben.app import look as commands_look
 from mckibben.app import reach as commands_reach
 from mckibben.app import run as commands_run
 from mckibben.app import sensitivity as commands_derive
+from mckibben.app import serve as commands_serve
 from mckibben.app import simulate as commands_simulate
 from mckibben.app import sweep as commands_sweep
 from mckibben.app import tolerances as commands_tolerances
@@ -63,6 +64,7 @@ app.add_typer(commands_data.data, name="data")
 app.command(epilog=commands_sheet.EPILOG)(commands_sheet.datasheet)
 app.command(epilog=commands_draw.PLOT)(commands_draw.plot)
 app.command(epilog=commands_view.EPILOG)(commands_view.view)
+app.command(epilog=commands_serve.EPILOG)(commands_serve.serve)
 app.command(epilog=commands_draw.REPRODUCE)(commands_draw.reproduce)
 app.command(epilog=commands_look.INFO)(commands_look.info)
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Iterable
+from collections.abc import Callable, Iterable
 from typing import Any
 
 import attrs
@@ -55,7 +55,14 @@ EFFECTS = (
 """What can be switched. Compliance and friction are those of measured Festo muscles (theory page): put in your own."""
 
 
-def effects(muscle: Muscle, *, length: Any = None, contraction: Any = None, pressure: Any) -> Effects:
+def effects(
+    muscle: Muscle,
+    *,
+    length: Any = None,
+    contraction: Any = None,
+    pressure: Any,
+    watch: Callable[[int, int], None] | None = None,
+) -> Effects:
     """The size of each effect for a muscle at a length and pressure: solved with it and without, nothing guessed.
 
     Stretch and roll of the fibres, where the wall lies and how thick it is, a gap between tube and braid, fittings that
@@ -68,6 +75,7 @@ def effects(muscle: Muscle, *, length: Any = None, contraction: Any = None, pres
         length: distance between the fittings [m], a number or text with a unit.
         contraction: in place of the length: 1 - h/H0.
         pressure: gauge pressure [Pa], likewise.
+        watch: called with (effects done, effects in all).
 
     Returns:
         An `Effects`: its `table` has a row for each effect, the largest first, with changes in per cent, what to switch
@@ -88,7 +96,12 @@ def effects(muscle: Muscle, *, length: Any = None, contraction: Any = None, pres
     base, pace = _timed(muscle, held)
     if base.verdict != Verdict.STABLE:
         raise SpecError("effects", allowed=f"the muscle is not stable there: {base.reason}", advice="ask for another")
-    rows = [_row(muscle, held, effect, base, pace) for effect in _own(EFFECTS, rubbing)]
+    own, tell = _own(EFFECTS, rubbing), watch or (lambda done, total: None)
+    rows: list[dict[str, Any]] = []
+    for effect in own:
+        tell(len(rows), len(own))
+        rows.append(_row(muscle, held, effect, base, pace))
+    tell(len(rows), len(own))
     at = f"{show(held['length'], 'm')} and {show(held['pressure'], 'Pa')}"
     about = {"title": f"size of effects at {at}", "muscle": to_toml(rubbing, allow_custom=True)}
     return Effects(rubbing, held["length"], held["pressure"], _dataset(rows, about))

@@ -13,12 +13,11 @@ from typing import Any
 from mckibben import disk
 from mckibben.sheet.facts import facts
 from mckibben.sheet.html import html
+from mckibben.sheet.levels import rated
 from mckibben.sheet.pdf import pdf
 from mckibben.sheet.pictures import curves, drawing, svg
 from mckibben.sheet.words import page
 from mckibben.spec import Muscle, Path, SpecError, Step
-from mckibben.spec.catalogue import CATALOGUE
-from mckibben.spec.change import CHANGED
 from mckibben.units import UnitError, to_si
 
 __all__ = ["FORMATS", "check_sheet", "datasheet"]
@@ -26,8 +25,6 @@ __all__ = ["FORMATS", "check_sheet", "datasheet"]
 FORMATS = {".pdf": "pages for print", ".html": "one page that needs nothing beside it"}
 LEVELS = 4
 """Pressures of a sheet where only the largest is given."""
-_RATED = {"paper": "1 bar", "reference": "1 bar"} | {name: entry.rated for name, entry in CATALOGUE.items()}
-"""Pressures that presets are meant for."""
 
 
 def datasheet(
@@ -93,11 +90,10 @@ def check_sheet(path: str | PathLike[str], force: bool = False) -> str:
 def _pressures(muscle: Muscle, given: Any) -> tuple[float, ...]:
     """Rising gauge pressures [Pa]."""
     if given is None:
-        name = (muscle.name or "").removesuffix(CHANGED)
-        if name not in _RATED:
+        given = rated(muscle)
+        if given is None:
             said = "is missing: no pressure is known that this muscle is meant for"
             raise SpecError("datasheet.pressure", allowed=said, advice='give the largest one, such as "3 bar"')
-        given = _RATED[name]
     path = Step(pressure=given, force=0.0).pressure
     assert isinstance(path, Path)
     if path.needs_present or (path.varies and path.mode != "list"):

@@ -1,58 +1,22 @@
-"""What a datasheet says of a muscle, computed: a curve for each pressure, what it can do, and what is not known."""
+"""What a datasheet says of a muscle, computed: what it can do, what that takes, and what is not known."""
 
 from __future__ import annotations
 
 import math
 import re
-import warnings
 from collections.abc import Callable, Iterable, Iterator
-from typing import Any
 
 import attrs
 import numpy as np
 
 from mckibben.experiments.limits import Limits, limits
-from mckibben.experiments.run import run
-from mckibben.measure.caution import MuscleWarning
 from mckibben.measure.mass import mass_of, over_fibres
 from mckibben.results.result import Result
-from mckibben.results.told import verdict
-from mckibben.results.verdict import Verdict
-from mckibben.spec import BlockedForce, FreeContraction, Isobaric, Muscle, Protocol, Step, Test
+from mckibben.sheet.levels import Fact, Level, curve, ends, known, stable
+from mckibben.spec import Muscle
 from mckibben.spec.constants import ATMOSPHERE
-from mckibben.spec.plausible import trusted
 
-__all__ = ["Fact", "Facts", "Level", "cautions_once", "facts"]
-
-POINTS = 16
-"""States of each curve."""
-STROKE = 0.08
-"""Free contraction below which a curve begins at a stretched length: such muscles pull where they are stretched."""
-SHORTEST = 1e-3
-"""Contraction over which a curve goes at least."""
-STRETCHED = 0.6
-"""Where such a curve begins: share of the way from the length as made to full extension."""
-USUAL = 0.25
-"""Contraction at which curves end where no free contraction is known."""
-
-
-@attrs.frozen
-class Fact:
-    """A number [SI], NaN with the reason where there is none."""
-
-    value: float
-    reason: str = ""
-
-
-@attrs.frozen(eq=False)
-class Level:
-    """The muscle at one gauge pressure [Pa]."""
-
-    pressure: float
-    blocked: Fact  #: force at the length as made [N]
-    contraction: Fact  #: free contraction
-    length: Fact  #: free length [m]
-    curve: Result
+__all__ = ["Facts", "cautions_once", "facts"]
 
 
 @attrs.frozen(eq=False)
@@ -90,80 +54,26 @@ def facts(
     """Compute what a datasheet says at some rising gauge pressures [Pa]; densities [kg/m^3] of fibres and chamber."""
     total = len(pressures) + 3
     watch(0, total)
-    blocked = _run(muscle, BlockedForce(pressure=list(pressures)))
-    watch(1, total)
-    free = _freed(muscle, pressures)
-    watch(2, total)
-    contractions = [_known(*at, "contraction") for at in free]
-    first, last = _span(muscle, contractions)
+    both = ends(muscle, pressures, lambda done: watch(done, total))
     levels = []
-    for k, (pressure, own) in enumerate(zip(pressures, contractions, strict=True)):
-        end = last if own.reason else own.value
-        end = end if abs(end - first) > SHORTEST else first + SHORTEST
-        with trusted():  # SI numbers
-            way: Any = {"contraction": np.linspace(first, end, POINTS).tolist()}
-            curve = _run(muscle, Isobaric(pressure=pressure, **way))
-        levels.append(Level(pressure, _known(blocked, k, "force"), own, _known(*free[k], "length"), curve))
+    for k, pressure in enumerate(pressures):
+        levels.append(both.level(k, curve(muscle, pressure, both.first, both.end(k))))
         watch(3 + k, total)
     reach, why = _range(muscle, pressures[-1])
     watch(total, total)
-    results = [blocked, *(result for result, _ in free), *(level.curve for level in levels)]
+    results = [both.blocked, *(result for result, _ in both.free), *(level.curve for level in levels)]
     tension, where = _tension(results)
     strength = muscle.braid.fibre.breaking_force
     safety = Fact(math.nan, "not known: the breaking force of a fibre")
     if strength is not None:
         safety = Fact(strength / tension.value) if tension.value > 0.0 else Fact(math.nan, "no fibre is pulled")
-    made, volume = _bore(muscle), _known(*free[-1], "air_volume")
+    made, volume = _bore(muscle), known(*both.free[-1], "air_volume")
     filled = (pressures[-1] + ATMOSPHERE) / ATMOSPHERE * volume.value - made
     return Facts(
-        muscle, tuple(levels), free[-1], reach, why, tension, where, safety, _diameter(levels, muscle), made, volume,
-        Fact(filled, volume.reason), _work(levels[-1]), _mass(muscle, *densities),
+        muscle, tuple(levels), both.free[-1], reach, why, tension, where, safety, _diameter(levels, muscle), made,
+        volume, Fact(filled, volume.reason), _work(levels[-1]), _mass(muscle, *densities),
         tuple(cautions_once(one.cautions for one in results)),
     )  # fmt: skip
-
-
-def _run(muscle: Muscle, test: Test) -> Result:
-    with warnings.catch_warnings():
-        warnings.simplefilter("ignore", MuscleWarning)  # the sheet has them
-        return run(muscle, test, tolerance=1e-4)
-
-
-def _freed(muscle: Muscle, pressures: tuple[float, ...]) -> list[tuple[Result, int]]:
-    """The free muscle at each pressure; with friction one that is filled at its length as made, and then let go."""
-    if muscle.friction is None:
-        free = _run(muscle, FreeContraction(pressure=list(pressures)))
-        return [(free, k) for k in range(len(pressures))]
-    with trusted():  # SI numbers
-        ways = [
-            Protocol(steps=[Step(length=muscle.rest_length, pressure=pressure, points=1),
-                            Step(force="to 0 N", pressure="hold", points=2)])
-            for pressure in pressures
-        ]  # fmt: skip
-    return [(_run(muscle, way), -1) for way in ways]
-
-
-def _known(result: Result, k: int, name: str) -> Fact:
-    """A number of a state that is stable; else why there is none."""
-    if result.verdict[k] == Verdict.STABLE:
-        return Fact(float(result.column(name)[k]))
-    if k < 0:  # the reason is that of the step before, which was not finished
-        k = int(np.argmin(stable(result)))
-    return Fact(math.nan, verdict(result.verdict[k], str(result.column("reason")[k])))
-
-
-def stable(result: Result) -> np.ndarray:
-    """Which states are stable."""
-    return np.array([word == Verdict.STABLE for word in result.verdict])
-
-
-def _span(muscle: Muscle, contractions: list[Fact]) -> tuple[float, float]:
-    """Contractions between which the curves go; each ends where the muscle is free, if that is known."""
-    known = [one.value for one in contractions if one.value == one.value]
-    far = max(known, key=abs) if known else USUAL
-    if far >= STROKE or far < -0.02:
-        return 0.0, far
-    braid, rest = muscle.braid, float(muscle.rest_length)
-    return -STRETCHED * (braid.length / math.sin(braid.angle) - braid.length) / rest, far
 
 
 def _range(muscle: Muscle, pressure: float) -> tuple[Limits | None, str]:

@@ -14,7 +14,8 @@ from matplotlib.figure import Figure
 
 from mckibben.measure.mass import over_fibres
 from mckibben.results.verdict import Verdict
-from mckibben.sheet.facts import Facts, stable
+from mckibben.sheet.facts import Facts
+from mckibben.sheet.levels import stable
 from mckibben.spec import Muscle
 from mckibben.units import show
 from mckibben.view import style

@@ -7,7 +7,8 @@ from collections.abc import Iterator
 import attrs
 
 from mckibben.measure.report import versions
-from mckibben.sheet.facts import Fact, Facts
+from mckibben.sheet.facts import Facts
+from mckibben.sheet.levels import Fact
 from mckibben.spec import Muscle, presets
 from mckibben.spec.change import CHANGED
 from mckibben.spec.constants import ATMOSPHERE
