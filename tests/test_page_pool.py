@@ -6,6 +6,7 @@ import os
 import signal
 from collections.abc import Callable, Coroutine, Mapping
 from functools import partial
+from pathlib import Path
 from typing import Any
 
 import pytest
@@ -114,6 +115,19 @@ def test_a_task_that_nobody_waits_for(ends: bool) -> None:
             worker.free.set()
             assert await pool.ask("y", {}, silent) == '"y"'
         await pool.stop()
+
+    run(work)
+
+
+@pytest.mark.skipif(not Path("/proc/self/environ").exists(), reason="the system does not tell the environment")
+def test_temporary_files_of_a_process_lie_in_the_folder_of_the_page(tmp_path: Path) -> None:
+    async def work() -> None:
+        process = Process(lambda: str(tmp_path))
+        await process.ask("open", PAPER, silent)
+        assert process._process is not None
+        environment = Path(f"/proc/{process._process.pid}/environ").read_bytes().split(b"\0")
+        assert f"TMPDIR={tmp_path}".encode() in environment
+        await process.stop()
 
     run(work)
 
