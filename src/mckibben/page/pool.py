@@ -114,6 +114,7 @@ class Pool:
     def __init__(
         self, count: int, waiting: int, limit: float, ends: bool = False, kind: Callable[[], Working] = Process
     ) -> None:
+        self.count = count
         self._room = asyncio.Semaphore(count)
         self._most, self._waiting, self._limit, self._ends, self._kind = waiting, 0, limit, ends, kind
         self._free: list[Working] = []
