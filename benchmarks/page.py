@@ -21,6 +21,8 @@ from browsers import CHROMIUM, FLAGS, Watched, served
 
 PEOPLE = 20
 MOVES = 60
+BEGINNING = 20.0
+"""Seconds in which processes are started for many people."""
 PAUSE = 0.25
 """Seconds between the moves of one slider in the browser: each is seen before the next."""
 STEP = 0.1
@@ -107,7 +109,9 @@ def main(seconds: float) -> None:
     print(f"{'what':52} {'count':>6} {'p50':>8} {'p95':>8} {'largest':>8}")
     with served() as address:
         rows = in_a_browser(address)
+        begun, first = asyncio.run(load(address, BEGINNING))
         times, errors = asyncio.run(load(address, seconds))
+    rows.append(told(f"{PEOPLE} people, the first {BEGINNING:g} s, {len(first)} errors: request to curves", begun))
     rows.append(told(f"{PEOPLE} people for {seconds:g} s, {len(errors)} errors: request to curves", times))
     print(*errors[:3], sep="\n")
     Path("out").mkdir(exist_ok=True)

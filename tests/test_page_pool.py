@@ -6,6 +6,7 @@ import os
 import signal
 from collections.abc import Callable, Coroutine, Mapping
 from functools import partial
+from pathlib import Path
 from typing import Any
 
 import pytest
@@ -118,6 +119,19 @@ def test_a_task_that_nobody_waits_for(ends: bool) -> None:
     run(work)
 
 
+@pytest.mark.skipif(not Path("/proc/self/environ").exists(), reason="the system does not tell the environment")
+def test_temporary_files_of_a_process_lie_in_the_folder_of_the_page(tmp_path: Path) -> None:
+    async def work() -> None:
+        process = Process(lambda: str(tmp_path))
+        await process.ask("open", PAPER, silent)
+        assert process._process is not None
+        environment = Path(f"/proc/{process._process.pid}/environ").read_bytes().split(b"\0")
+        assert f"TMPDIR={tmp_path}".encode() in environment
+        await process.stop()
+
+    run(work)
+
+
 class Kinds:
     """Looks as a process does them, whose functions are at hand once they were used."""
 
@@ -127,6 +141,7 @@ class Kinds:
         self.name, self.log, self.known = name, log, set[str]()
 
     async def ask(self, task: str, said: Mapping[str, Any], tell: Tell) -> str:
+        await asyncio.sleep(0)
         kind = f"{task} {said['muscle']}"
         self.log.append((self.name, said["first"]))
         if kind not in self.known and not said["first"]:
@@ -150,6 +165,31 @@ def test_a_new_kind_of_muscle_is_prepared_beside() -> None:
             assert [first for who, first in log if who == name] == [False, False, True, False]
         assert [first for who, first in log if who == "beside"] == [True, True]
         assert parts == ["preparing", "preparing", "state", "state", "state"]
+
+    run(work)
+
+
+def test_every_process_is_warm_once_several_people_look() -> None:
+    async def work() -> None:
+        log: list[tuple[str, bool]] = []
+        made: list[Kinds] = []
+
+        def new() -> Kinds:
+            made.append(Kinds("p", log))
+            return made[-1]
+
+        states, curves, beside = (Pool(2, 9, 60.0, kind=new) for _ in range(3))
+        looks = Looks(states, curves, beside)
+        looks.warm({"muscle": "first"})
+        for _ in range(9):
+            await asyncio.sleep(0)
+        assert [sorted(one.known) for one in made] == [["look first"], ["curves first"]]
+        looks.warm_all()
+        looks.warm_all()
+        assert looks._all is not None
+        await looks._all
+        assert len(made) == 4
+        assert all(one.known for one in made)
 
     run(work)
 

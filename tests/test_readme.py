@@ -20,7 +20,7 @@ ROOT = Path(__file__).parent.parent
 README = (ROOT / "README.md").read_text(encoding="utf-8")
 PICTURE = re.compile(r"!\[[^\]]*\]\(([^)#]+)\)")
 LINK = re.compile(r"(?<!!)\[[^\]]*\]\(([^)]+)\)")
-TOO_LONG = ("reproduce",)
+TOO_LONG = ("reproduce", "serve")
 """Commands that have tests of their own."""
 
 

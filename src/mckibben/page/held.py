@@ -22,8 +22,10 @@ START = {"pressure": 1e5, "hold": "force", "value": 0.0, "top": 1e5}
 class Page:
     """A page as it is served: the muscle it begins with, its processes, its folder, how many look at it."""
 
-    def __init__(self, start: Mapping[str, Any], kind: Callable[[], Working] = Process) -> None:
+    def __init__(self, start: Mapping[str, Any], kind: Callable[[], Working] | None = None) -> None:
         self.start = dict(start)
+        self.folder = ""
+        kind = kind or (lambda: Process(lambda: self.folder))
         at_once = max(2, min(4, (os.cpu_count() or 1) // 2))
         self.states, self.curves = (Pool(at_once, 64, 120.0, kind=kind) for _ in range(2))
         self.beside = Pool(2, 16, 600.0, kind=kind)
@@ -35,7 +37,6 @@ class Page:
             "beside": self.looks, "measured": WithData(self.beside, self.kept), "fit": WithData(self.jobs, self.kept),
         }  # fmt: skip
         self.people = 0
-        self.folder = ""
 
     @contextlib.asynccontextmanager
     async def served(self, app: Any) -> AsyncIterator[None]:

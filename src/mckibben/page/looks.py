@@ -31,7 +31,9 @@ class Looks:
         self._pools = {"look": states, "curves": curves}
         self._beside = beside
         self._prepared: dict[str, asyncio.Future[None]] = {}
+        self._first: dict[str, Any] = {}
         self._warming: asyncio.Task[Any] | None = None
+        self._all: asyncio.Task[Any] | None = None
 
     async def ask(self, task: str, said: Mapping[str, Any], tell: Tell) -> str:
         """The curves of a look as JSON, as of `Pool.ask`; the state is told as soon as it is known."""
@@ -70,8 +72,22 @@ class Looks:
 
     def warm(self, said: Mapping[str, Any]) -> None:
         """Begin to have at hand what a look needs, before somebody looks; looks wait for it."""
-        self._warming = asyncio.create_task(self._warm(dict(said) | {"first": True}))
+        self._first = dict(said) | {"first": True}
+        self._warming = asyncio.create_task(self._warm(1))
 
-    async def _warm(self, said: dict[str, Any]) -> None:
-        asked = [pool.ask(task, said, lambda name, part: None) for task, pool in self._pools.items()]
+    def warm_all(self) -> None:
+        """Have it at hand in every process: more than one browser looks."""
+        if self._all is None:
+            self._all = asyncio.create_task(self._warm_all())
+
+    async def _warm_all(self) -> None:
+        if self._warming is not None:
+            await asyncio.wait([self._warming])
+            await self._warm(max(pool.count for pool in self._pools.values()))
+
+    async def _warm(self, times: int) -> None:
+        several = [
+            one for one in self._pools.items() for _ in range(times)
+        ]  # at once, or one process would do them all
+        asked = [pool.ask(task, self._first, lambda name, part: None) for task, pool in several]
         await asyncio.gather(*asked, return_exceptions=True)

@@ -48,9 +48,10 @@ class Tasks(Protocol):
 
 
 class Process:
-    """A process that does tasks."""
+    """A process that does tasks. Its temporary files lie in a folder, which is asked for when it starts."""
 
-    def __init__(self) -> None:
+    def __init__(self, folder: Callable[[], str] = lambda: "") -> None:
+        self._folder = folder
         self._process: asyncio.subprocess.Process | None = None
 
     async def ask(self, task: str, said: Mapping[str, Any], tell: Tell) -> str:
@@ -78,9 +79,12 @@ class Process:
     async def _started(self) -> asyncio.subprocess.Process:
         source = str(Path(__file__).parents[2])
         paths = [source, *filter(None, [os.environ.get("PYTHONPATH")])]
+        own = {"PYTHONPATH": os.pathsep.join(paths)}
+        if place := self._folder():
+            own |= dict.fromkeys(("TMPDIR", "TEMP", "TMP"), place)
         self._process = await asyncio.create_subprocess_exec(
             sys.executable, "-P", "-m", "mckibben.page.worker", stdin=subprocess.PIPE, stdout=subprocess.PIPE,
-            limit=LINE, env=os.environ | {"PYTHONPATH": os.pathsep.join(paths)}, start_new_session=True,
+            limit=LINE, env=os.environ | own, start_new_session=True,
         )  # fmt: skip
         return self._process
 
@@ -110,6 +114,7 @@ class Pool:
     def __init__(
         self, count: int, waiting: int, limit: float, ends: bool = False, kind: Callable[[], Working] = Process
     ) -> None:
+        self.count = count
         self._room = asyncio.Semaphore(count)
         self._most, self._waiting, self._limit, self._ends, self._kind = waiting, 0, limit, ends, kind
         self._free: list[Working] = []

@@ -65,6 +65,8 @@ def _socket(page: Page) -> Any:
             await _refused(socket, 1013, "busy", "too many people look at this page: try again later")
             return
         page.people += 1
+        if page.people > 1:
+            page.looks.warm_all()
         session = Session(socket.send_text, page.tasks)
         try:
             while True:
