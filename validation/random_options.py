@@ -30,7 +30,7 @@ from mckibben.solver.held import Held
 FILE, PAGE = OUT / "random_options.jsonl", Path(__file__).with_name("random_options.md")
 FINE = 64
 """Half-length unknowns of the states that judge; their own error is told by the tail of their coefficients."""
-STEP = 1e-3
+STEP = 1e-4
 """Of lengths and pressures in differences, over the rest length and 1 bar; halved once and extrapolated."""
 SLOPES, MIRROR, BACK = 1e-6, 1e-7, 1e-7
 """How far each check may be off, over |F| + pi R0^2 P for forces, and over the length or volume."""
@@ -106,7 +106,7 @@ def failures(row: dict[str, Any]) -> list[str]:
         said.append(f"{found['verdict']}: {found['reason']}")
     if found["verdict"] == "stable" and not found.get("fine"):
         said.append("no state on more unknowns")
-    if found.get("error", 0.0) > max(found["estimate"], found["tail"] ** 1.5, ROUNDING):
+    if "error" in found and found["error"] > max(found["estimate"], found["tail"] ** 1.5, ROUNDING):
         said.append(f"the error {found['error']:.1e} is above the estimate {found['estimate']:.1e}")
     for name, (what, limit) in CHECKS.items():
         off = found.get(name, 0.0)
