@@ -76,7 +76,7 @@ def test_commands_of_the_readme_run(tmp_path: Path, monkeypatch: pytest.MonkeyPa
         if words[0] not in TOO_LONG and (words[0] != "view" or can_draw()):
             done = CliRunner().invoke(app, words)
             assert done.exit_code == 0, (words, done.output)
-    assert set(called) == {"check", "run", "plot", "info", "presets", "reproduce", "sensitivity", "view"}
+    assert set(called) == {"check", "run", "plot", "info", "presets", "reproduce", "sensitivity", "serve", "view"}
     assert (tmp_path / "force.png").read_bytes().startswith(b"\x89PNG")
 
 
