@@ -15,7 +15,9 @@ from starlette.websockets import WebSocketDisconnect
 import mckibben as mk
 from mckibben.page.curves import pressures_with
 from mckibben.page.session import LONGEST
+from mckibben.page.shape import as_made
 from mckibben.page.transfers import CASE
+from mckibben.view.braid3d import SKIN
 
 pytestmark = pytest.mark.page
 
@@ -281,3 +283,10 @@ def test_the_newest_look_wins(socket: Any) -> None:
             done.append(message["id"])
     assert done[-1] == 19
     assert len(done) < 20
+
+
+def test_bellows_whose_wall_is_not_told_are_drawn_as_made() -> None:
+    """What is drawn where no stable state was found on the way."""
+    bellows = mk.Chamber(law=mk.Bellows(axial_stiffness="50 N"))
+    drawn = as_made(mk.presets.paper().replace("chamber", bellows))
+    assert drawn["wall"] == [pytest.approx(SKIN * 0.0125)] * len(drawn["r"])

@@ -97,10 +97,10 @@ def _places(basis: Any) -> dict[tuple[int, int], Ways]:
     """The blocks (part, part) of the upper triangle that are not zero, and what contributes to them."""
     fields, spans = basis.operators().fields, _spans(basis)
     has = [[bool(np.any(part[:, a:b])) for a, b in spans] for part in fields]
+    both = {k: {(i, j), (j, i)} for k, (i, j) in enumerate(pairs(len(fields)))}
     found: dict[tuple[int, int], Ways] = {}
     for a in range(len(spans)):
         for b in range(a, len(spans)):
-            both = {k: {(i, j), (j, i)} for k, (i, j) in enumerate(pairs(len(fields)))}
             ways = {k: tuple(sorted((i, j) for i, j in ways if has[i][a] and has[j][b])) for k, ways in both.items()}
             found[a, b] = {k: some for k, some in ways.items() if some}
     return {place: ways for place, ways in found.items() if ways}

@@ -9,7 +9,7 @@ import numpy as np
 from mckibben.page.plain import listed, number
 from mckibben.results.result import Result
 from mckibben.spec import Muscle
-from mckibben.view.braid3d import Body, display_diameter, drawn_fibres
+from mckibben.view.braid3d import Body, display_diameter, drawn_fibres, wall_made
 from mckibben.view.tube import Tube
 
 __all__ = ["as_made", "shape"]
@@ -28,7 +28,8 @@ def shape(result: Result, state: int = 0) -> dict[str, Any]:
 def as_made(muscle: Muscle) -> dict[str, Any]:
     """The shape of the muscle as made, which nothing pulls."""
     tube = Tube.cylinder(muscle)
-    wall = None if muscle.chamber is None else np.full(len(tube.v), float(muscle.chamber.wall_thickness))
+    made = wall_made(muscle)
+    wall = None if made is None else np.full(len(tube.v), made)
     return _told(tube, display_diameter(muscle), drawn_fibres(tube), None, wall)
 
 

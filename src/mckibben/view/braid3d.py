@@ -48,11 +48,8 @@ class Body:
     def of(cls, result: Result, state: int, cut: float | None = None) -> Body:
         """One state of a result."""
         tube, muscle = Tube.of(result, state), result.muscle
-        wall = None
-        if muscle.chamber is not None:
-            thickness = muscle.chamber.wall_thickness
-            made = SKIN * tube.R0 if thickness is None else float(thickness)
-            wall = made * result.column("stretch_thickness")[state]
+        made = wall_made(muscle)
+        wall = None if made is None else made * result.column("stretch_thickness")[state]
         return cls(tube, display_diameter(muscle), drawn_fibres(tube), wall, cut)
 
     @property
@@ -139,6 +136,14 @@ class Body:
             if b - a > 1e-3 * self._turn:
                 pieces.append(np.concatenate([[a], v[(v > a + 1e-9 * b) & (v < b - 1e-9 * b)], [b]]))
         return pieces
+
+
+def wall_made(muscle: Muscle) -> float | None:
+    """Thickness of the wall as made [m], or that with which it is drawn; None without a chamber."""
+    if muscle.chamber is None:
+        return None
+    told = muscle.chamber.wall_thickness
+    return SKIN * float(muscle.braid.radius) if told is None else float(told)
 
 
 def display_diameter(muscle: Muscle) -> float:
