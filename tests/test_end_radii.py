@@ -130,8 +130,8 @@ def test_work_is_stored() -> None:
     state = mk.solve(muscle, length=h, pressure=P)
     along = (potential(h + by, P) - potential(h - by, P)) / (2.0 * by)
     across = (potential(h, P + 1e3) - potential(h, P - 1e3)) / 2e3
-    assert_allclose(along, state.force, rtol=2e-5)
-    assert_allclose(-across, state.volume, rtol=1e-6)
+    assert_allclose(along, state.force, rtol=5e-6)
+    assert_allclose(-across, state.volume, rtol=5e-8)
 
 
 def elements(n: int, length: float, pressure: float) -> float:
@@ -175,7 +175,7 @@ def test_against_a_code_of_its_own() -> None:
     coarse, fine = (elements(n, 0.1, 5e4) for n in (120, 240))
     found = mk.solve(ended(NARROW, WIDE), length=0.1, pressure=5e4).force
     assert 1e-5 < abs(fine / found - 1.0) < 1e-2
-    assert_allclose((4.0 * fine - coarse) / 3.0, found, rtol=1e-4)
+    assert_allclose((4.0 * fine - coarse) / 3.0, found, rtol=2e-5)
 
 
 def test_slopes_by_the_radii() -> None:

@@ -110,7 +110,7 @@ def failures(row: dict[str, Any]) -> list[str]:
         said.append(f"the error {found['error']:.1e} is above the estimate {found['estimate']:.1e}")
     for name, (what, limit) in CHECKS.items():
         off = found.get(name, 0.0)
-        if not np.isnan(off) and off > limit:
+        if not off <= limit:  # also where a state beside was not found
             said.append(f"{what}: off by {off:.1e}")
     return said
 
