@@ -127,6 +127,27 @@ def test_states_that_cannot_be_are_told_in_words(seen: Watched) -> None:
     assert "It holds" in tab.inner_text("#verdict")
 
 
+def test_what_is_being_typed_is_not_overwritten(seen: Watched) -> None:
+    tab = seen.open()
+    field = tab.get_by_label("Pressure", exact=True)
+    field.fill("0.75")
+    tab.evaluate("document.querySelector('input[value=contraction]').click()")  # answers come, the focus stays
+    seen.settled()
+    assert tab.get_by_label("a contraction").is_checked()
+    assert field.input_value() == "0.75"
+    assert number(seen, "gauge pressure") == "1 bar"
+    field.press("Enter")
+    seen.settled()
+    assert number(seen, "gauge pressure") == "0.75 bar"
+    field.fill("seven")
+    field.press("Enter")
+    assert field.get_attribute("aria-invalid") is not None
+    tab.get_by_label("Pressure, in bar").press("ArrowLeft")
+    seen.settled()
+    assert field.get_attribute("aria-invalid") is None
+    assert number(seen, "gauge pressure") == f"{float(field.input_value()):.5g} bar"
+
+
 def test_files_that_are_opened(seen: Watched, tmp_path: Path) -> None:
     tab = seen.open()
     case = tmp_path / "mine.toml"

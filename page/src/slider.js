@@ -23,7 +23,9 @@ export class Slider {
     this.limits(about.least, about.most);
     this.range.addEventListener("input", () => this.moved(false));
     this.range.addEventListener("change", () => this.moved(true));
+    this.field.addEventListener("input", () => (this.typing = true));
     this.field.addEventListener("change", () => this.typed());
+    this.field.addEventListener("blur", () => this.left());
     this.field.addEventListener("keydown", (event) => event.key === "Enter" && (event.preventDefault(), this.typed()));
   }
 
@@ -62,16 +64,24 @@ export class Slider {
     this.value = value;
     this.range.value = this.place(value);
     this.range.setAttribute("aria-valuetext", `${plain(value)} ${this.about.unit}`.trim());
-    if (document.activeElement !== this.field || !this.field.classList.contains("wrong")) this.field.value = plain(value);
+    if (!this.typing) this.field.value = plain(value); // an answer that comes meanwhile takes nothing away
   }
 
   moved(settled) {
     const value = settled && this.value !== undefined && this.place(this.value) === Number(this.range.value)
       ? this.value : this.reading();
+    this.typing = false;
     this.field.classList.remove("wrong");
     this.field.removeAttribute("aria-invalid");
     this.set(value);
     this.changed(value, settled);
+  }
+
+  // What is wrong stays to be mended; what is right is shown as it was understood.
+  left() {
+    if (this.field.classList.contains("wrong")) return;
+    this.typing = false;
+    this.set(this.value);
   }
 
   typed() {
@@ -80,6 +90,7 @@ export class Slider {
     const wrong = text === "" || !Number.isFinite(value) || (this.about.whole === true && !Number.isInteger(value));
     this.field.classList.toggle("wrong", wrong);
     this.field.toggleAttribute("aria-invalid", wrong);
+    this.typing = wrong;
     if (wrong || value === this.value) return;
     this.set(value);
     this.changed(value, true);
