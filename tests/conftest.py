@@ -3,6 +3,7 @@
 The environment is set before anything imports JAX or the package, which is why this happens on import.
 """
 
+import gc
 import os
 from pathlib import Path
 
@@ -20,6 +21,9 @@ os.environ.setdefault(
     "XLA_FLAGS",
     "--xla_backend_optimization_level=0 --xla_cpu_use_fusion_emitters=false --xla_cpu_parallel_codegen_split_count=1",
 )
+
+# Traces of JAX are many objects that live long: to look through them as often as Python does costs a twelfth of all.
+gc.set_threshold(100_000, 20, 20)
 
 from beartype import BeartypeConf, beartype
 from hypothesis import HealthCheck, settings

@@ -2,16 +2,18 @@
 
     python validation/gradients.py [--count 200] [--workers 2] [--report-only]
 
-Derivatives are those of the default call, differences those of calls with a tolerance of 1e-10. The slopes go to
-out/gradients.jsonl as they come, the tables into validation/README.md; a run that was cut short goes on.
+Derivatives are those of the default call, differences those of calls with a tolerance of 1e-10. The slopes go line
+by line to out/gradients_*.jsonl, a file for each kind of test and ends; the tables into validation/README.md. A run
+that was cut short goes on.
 """
 
 import argparse
 import itertools
 import json
 import multiprocessing
-from concurrent.futures import ProcessPoolExecutor, as_completed
+from concurrent.futures import ProcessPoolExecutor
 from functools import partial
+from pathlib import Path
 from typing import Any
 
 import environment
@@ -25,7 +27,8 @@ import mckibben as mk
 from mckibben import spec
 
 SEED = 20261126
-ROWS = environment.OUT / "gradients.jsonl"
+GROUPS = range(2 * len(KINDS))
+"""Muscle k is of group k modulo their number: ends go by turns, kinds of test by pairs."""
 STEP = 1e-3
 """Largest relative step of a number, and largest relative change of a result in a step."""
 FINE = 1e-10
@@ -129,9 +132,25 @@ def difference(leaves: np.ndarray, tree: Any, i: int, step: float) -> tuple[Valu
     return fine, {name: np.abs(fine[name] - coarse[name]) for name in RESULTS}
 
 
-def group(ids: list[int]) -> list[dict[str, Any]]:
-    """Muscles of one kind of test and ends, which share what is compiled."""
-    return [safely(k) for k in ids]
+def file_of(group: int) -> Path:
+    """Rows of the muscles of one kind of test and ends."""
+    return environment.OUT / f"gradients_{group}.jsonl"
+
+
+def measured() -> list[dict[str, Any]]:
+    """All rows so far, by muscle; a line that was cut short does not count."""
+    lines = [
+        line for group in GROUPS if (file := file_of(group)).exists() for line in file.read_text("utf-8").splitlines()
+    ]
+    return sorted((json.loads(line) for line in lines if line.endswith("}")), key=lambda row: int(row["id"]))
+
+
+def write_group(group: int, ids: list[int]) -> None:
+    """Muscles of one kind of test and ends, which share what is compiled: row by row."""
+    with file_of(group).open("a", encoding="utf-8") as lines:
+        for k in ids:
+            lines.write(json.dumps(safely(k)) + "\n")
+            lines.flush()
 
 
 def safely(k: int) -> dict[str, Any]:
@@ -149,24 +168,17 @@ def main() -> None:
     asked = parser.parse_args()
     if not asked.report_only:
         run(asked.count, asked.workers)
-    rows = [json.loads(line) for line in ROWS.read_text(encoding="utf-8").splitlines()]
-    put("## Gradients", report(sorted(rows, key=lambda row: int(row["id"]))))
+    put("## Gradients", report(measured()))
 
 
 def run(count: int, workers: int) -> None:
     """Muscles of one kind of test and ends are measured in one process, since they share what is compiled."""
     environment.OUT.mkdir(exist_ok=True)
-    given = ROWS.read_text(encoding="utf-8").splitlines() if ROWS.exists() else []
-    known = {json.loads(line)["id"] for line in given}
-    alike = 2 * len(KINDS)
-    groups = [[k for k in range(first, count, alike) if k not in known] for first in range(alike)]
-    with (
-        ProcessPoolExecutor(workers, multiprocessing.get_context("spawn")) as pool,
-        ROWS.open("a", encoding="utf-8") as lines,
-    ):
-        for job in as_completed([pool.submit(group, ids) for ids in groups if ids]):
-            lines.writelines(json.dumps(row) + "\n" for row in job.result())
-            lines.flush()
+    known = {row["id"] for row in measured()}
+    with ProcessPoolExecutor(workers, multiprocessing.get_context("spawn")) as pool:
+        left = {first: [k for k in range(first, count, len(GROUPS)) if k not in known] for first in GROUPS}
+        for job in [pool.submit(write_group, first, ids) for first, ids in left.items() if ids]:
+            job.result()
 
 
 if __name__ == "__main__":
