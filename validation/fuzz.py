@@ -83,8 +83,8 @@ class Reader:
         """As `mckibben check` does, and back to text."""
         import tomllib
 
-        from mckibben.app import fields
         from mckibben.experiments import foresee
+        from mckibben.spec.rows import muscle_rows
         from mckibben.spec.text import from_mapping, to_toml
         from mckibben.sweeps.plan import plan
         from mckibben.sweeps.sweepfile import read_sweep
@@ -92,7 +92,7 @@ class Reader:
         asked = read_sweep(path, overrides, required=False)
         again = from_mapping(tomllib.loads(to_toml(asked.case)), test_required=False)
         assert again == asked.case, "does not read back equal"
-        list(fields.muscle_rows(asked.case.muscle))
+        list(muscle_rows(asked.case.muscle))
         list(foresee.derived(asked.case.muscle))
         list(foresee.beyond(asked.case.muscle, asked.case.test))
         said = ""
