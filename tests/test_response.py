@@ -116,6 +116,20 @@ def test_a_state_that_is_not_there_spoils_no_other(by_jit: bool) -> None:
     assert not np.isfinite(forward[1])
 
 
+def test_a_wall_that_rolls_up_is_no_state() -> None:
+    """Random muscle 19 of validation/gradients.py: followed through a bulge, it would be -373 and -368 mm long."""
+    fibre = mk.Fibre(diameter=0.4043166400424732e-3, E=632579644.3477709, nu=0.4)
+    braid = mk.Braid(
+        radius=0.02253413062945334, length=0.16891414852749567, angle=0.41254084539713354, fibres=8, fibre=fibre
+    )
+    law = mk.MooneyRivlin(c1=26100.00183993157, c2=4610.580069838202)
+    muscle = mk.Muscle(braid=braid, chamber=mk.Chamber(thickness=0.6313748044171586e-3, law=law), ends="pinned")
+    test = mk.Isotonic(force=-609.706979862, pressure=[265740.917929, 531481.835858])
+    assert np.isnan(mk.response(muscle, test)["length"]).all()
+    at_rest = mk.response(muscle, mk.Isotonic(force=0.0, pressure=[1e4, 2e4]))
+    assert (at_rest["length"] > 0.0).all()
+
+
 def test_tests_without_derivatives_are_refused() -> None:
     with pytest.raises(mk.SpecError, match=r"step\.along"):
         mk.response(PAPER, mk.Step(length="100 mm to 90 mm", pressure="1 bar", along="branch"))

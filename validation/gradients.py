@@ -84,6 +84,9 @@ def measure(k: int) -> dict[str, Any]:
     row["finite"] = all(np.isfinite(value).all() for value in at.values())
     if not row["finite"]:
         return row | {"told": not np.isfinite(np.concatenate([slope.ravel() for slope in jacobian.values()])).all()}
+    row["stable"] = set(mk.run(muscle, test, tolerance=FINE).verdict) == {"stable"}
+    if not row["stable"]:  # a step of a difference may tip it over
+        return row
     sizes = natural(case, at)
     shares = {name: np.asarray(jacobian[name]) * leaves / sizes[name][:, None] for name in RESULTS}
     strongest = np.max([np.abs(share).max(axis=0) for share in shares.values()], axis=0)
@@ -115,6 +118,8 @@ def natural(case: Case, at: Values) -> Values:
     """Sizes that results are held against: a force may pass through zero."""
     sizes = {name: np.abs(value) for name, value in at.items()}
     sizes["force"] = sizes["force"] + np.pi * case["muscle"]["R0"] ** 2 * sizes["pressure"]
+    work = sizes["pressure"] * np.pi * case["muscle"]["R0"] ** 2 * case["muscle"]["H0"]
+    sizes["energy"] = np.maximum(sizes["energy"], 1e-6 * work)  # held at rest, a clamped braid stores nothing
     sizes["energy_chamber"] = sizes["energy"]
     return sizes
 
@@ -142,7 +147,8 @@ def measured() -> list[dict[str, Any]]:
     lines = [
         line for group in GROUPS if (file := file_of(group)).exists() for line in file.read_text("utf-8").splitlines()
     ]
-    return sorted((json.loads(line) for line in lines if line.endswith("}")), key=lambda row: int(row["id"]))
+    rows = {row["id"]: row for row in (json.loads(line) for line in lines if line.endswith("}"))}
+    return [rows[k] for k in sorted(rows)]
 
 
 def write_group(group: int, ids: list[int]) -> None:

@@ -51,8 +51,9 @@ def response(
         Arrays over the states of the test, in SI units: length, contraction, force, pressure, volume,
         energy_bending_1, energy_bending_2, energy_twist, energy_chamber, energy, air_volume, peak_fibre_tension,
         largest_radius.
-        A state that was not reached is NaN and its derivatives are not finite; they do not touch those of the others.
-        States are as symmetric as the muscle, and are not judged: `run` says which ones are stable and admissible.
+        A state that was not reached, or whose wall rolls up on itself, is NaN and its derivatives are not finite; they
+        do not touch those of the others. States are as symmetric as the muscle, and are not judged further: `run` says
+        which ones are stable and admissible.
 
     Raises:
         SpecError: for a test without derivatives, or a tolerance out of range.
@@ -152,8 +153,9 @@ def _results(
         state = settled(basis, p, b, near, step, present)
         good = jnp.isfinite(state.u).all(axis=1)
         safe = jax.tree.map(lambda row, good=good: jnp.where(good[:, None], row, 0.0), state)
-        seen = jax.vmap(lambda state: read(basis, on, state).numbers)(safe)
-        found.append({name: _honest(seen[name], good, still) for name in OBSERVED})
+        seen = jax.vmap(partial(read, basis, on))(safe)
+        good = good & (seen.largest_slope <= jnp.pi)
+        found.append({name: _honest(seen.numbers[name], good, still) for name in OBSERVED})
         present = reading(basis, on, jax.tree.map(lambda row: row[-1], state))
     return {name: jnp.concatenate([seen[name] for seen in found]) for name in OBSERVED}
 
