@@ -11,7 +11,7 @@ import numpy as np
 from mckibben.data.values import Data
 from mckibben.experiments.run import run
 from mckibben.fitting.free import Free, put_in
-from mckibben.fitting.misfit import Misfit, Points
+from mckibben.fitting.misfit import Points
 from mckibben.fitting.search import Least
 from mckibben.fitting.together import AnyMisfit, misfit_of
 from mckibben.fitting.uncertain import Spread
@@ -85,9 +85,10 @@ class Fit(Fitted):
         error = np.full(len(points), np.nan)
         good = np.isfinite(points).all(axis=1) & np.isfinite(curve.force)
         if good.any():
-            count = int(good.sum())
-            there = Points(points[good], np.zeros(count), np.full(count, "curve"), np.full(count, ""), np.ones(count))
-            misfit = Misfit(self.muscle, free, there, int(self.data.attrs["unknowns"]))
+            none = np.zeros(int(good.sum()))
+            names = np.full(len(none), "curve")
+            there = Points(points[good], none, names, np.full(len(none), ""), none + 1.0, none.astype(int))
+            misfit = misfit_of((self.muscle,), free, (there,), int(self.data.attrs["unknowns"]))
             x = misfit.start
             slopes = misfit(x).slopes / np.array([one.slope(float(at)) for one, at in zip(free, x, strict=True)])
             covariance = self.data["covariance"].values[np.ix_(own, own)]
