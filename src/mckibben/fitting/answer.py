@@ -16,7 +16,8 @@ from mckibben.fitting.search import Least
 from mckibben.fitting.together import AnyMisfit, misfit_of
 from mckibben.fitting.uncertain import Spread
 from mckibben.measure.report import versions
-from mckibben.results.fit import NUMBERS, POINTS, Fitted
+from mckibben.results.fit import POINTS, Fitted
+from mckibben.results.found import NUMBERS
 from mckibben.results.result import Result
 from mckibben.spec import Muscle, SpecError, Test
 from mckibben.spec.text import to_toml

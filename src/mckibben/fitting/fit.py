@@ -14,7 +14,7 @@ from mckibben.fitting.misfit import Points
 from mckibben.fitting.notes import notes_on
 from mckibben.fitting.search import LOSSES, Least, candidates, cost_of, least
 from mckibben.fitting.together import AnyMisfit, misfit_of, told_apart
-from mckibben.fitting.uncertain import Spread, profile, spread_of
+from mckibben.fitting.uncertain import intervals_of, spread_of
 from mckibben.spec import Muscle, SpecError
 from mckibben.spec.errors import nearest
 from mckibben.units import UnitError, show, to_si
@@ -102,7 +102,7 @@ def fit(
         raise SpecError("data", allowed=said, advice="free fewer numbers, or measure more")
     best, sigma = _best(misfit, known, loss, starts, tolerance, watch or (lambda count: None))
     spread = spread_of(best, known is not None)
-    low, high = _intervals(misfit, best, spread, sigma, loss, level, profiles)
+    low, high = intervals_of(misfit, best, spread, sigma, loss, level, profiles)
     notes, error = notes_on(misfit, best, spread), misfit.error(best.x)
     if error > tolerance:
         notes.append(f"the forces of the model are computed to {error:.1g} only, not to {tolerance:g}")
@@ -236,17 +236,3 @@ def _size(misfit: AnyMisfit, x: np.ndarray) -> float:
     n, k = len(residuals), len(misfit.free)
     size = 1.4826 * float(np.median(np.abs(residuals))) * np.sqrt(n / max(n - k, 1))
     return float(max(size, 1e-9 * np.abs(measured.force).max(), 1e-12))
-
-
-def _intervals(
-    misfit: AnyMisfit, best: Least, spread: Spread, sigma: float, loss: str, level: float, profiles: bool
-) -> tuple[np.ndarray, np.ndarray]:
-    """Lower and upper ends in x, by standard errors or by profiles."""
-    from scipy.stats import t
-
-    distance = float(t.ppf(0.5 + 0.5 * level, max(len(best.residuals) - len(best.x), 1)))
-    if profiles:
-        ends = [profile(misfit, best, spread, k, sigma, loss, distance) for k in range(len(best.x))]
-        return np.array([low for low, _ in ends]), np.array([high for _, high in ends])
-    reach = distance * np.where(np.isfinite(spread.errors), spread.errors, 1.0)
-    return np.clip(best.x - reach, 0.0, 1.0), np.clip(best.x + reach, 0.0, 1.0)

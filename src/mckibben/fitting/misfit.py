@@ -9,7 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
 from functools import cached_property
-from typing import Any
+from typing import Any, Protocol, runtime_checkable
 
 import attrs
 import numpy as np
@@ -26,7 +26,7 @@ from mckibben.solver.system import Unknowns
 from mckibben.spec import Muscle, SpecError
 from mckibben.spec.declared import evolved, numbers
 
-__all__ = ["Misfit", "Points", "Seen"]
+__all__ = ["Compared", "Misfit", "Points", "Seen"]
 
 
 @attrs.frozen(eq=False)
@@ -83,6 +83,25 @@ class Seen:
     def found(self) -> np.ndarray:
         """Which points have a state."""
         return np.isfinite(self.force)
+
+
+@runtime_checkable
+class Compared(Protocol):
+    """What a search needs of a misfit."""
+
+    @property
+    def free(self) -> tuple[Free, ...]: ...
+
+    @property
+    def measured(self) -> Any:
+        """With `force` (n), what is compared, and `weights` (n)."""
+
+    @property
+    def start(self) -> np.ndarray: ...
+
+    def values(self, x: np.ndarray) -> np.ndarray: ...
+
+    def __call__(self, x: np.ndarray) -> Seen: ...
 
 
 @attrs.define(eq=False)

@@ -16,6 +16,7 @@ import numpy as np
 from mckibben.data.branches import UNKNOWN
 from mckibben.discretise.placement import crowding
 from mckibben.experiments.rubbing import LARGEST, Going, step_to
+from mckibben.fitting.differences import by_differences
 from mckibben.fitting.free import Free, put_in
 from mckibben.fitting.misfit import Points, Seen
 from mckibben.model.parameters import parameters
@@ -26,11 +27,6 @@ from mckibben.solver.threads import one_thread
 from mckibben.spec import Muscle, SpecError
 
 __all__ = ["PathMisfit"]
-
-STEP = 1e-3
-"""Half of what a number is moved by for a difference, in parts of its range; smaller where states get lost so near."""
-SMALLEST = 1e-5
-"""The same at least."""
 
 Shares = dict[int, list[tuple[float, ...]]]
 
@@ -102,7 +98,7 @@ class PathMisfit:
         key = x.tobytes()
         if self.last is None or self.last[0] != key:
             force = self._measured_forces(x)
-            self.last = key, Seen(force, lambda: self._slopes(x, force))
+            self.last = key, Seen(force, lambda: by_differences(self._measured_forces, self.free, x, force))
         return self.last[1]
 
     def _at(self, x: np.ndarray) -> tuple[Muscle, np.ndarray, float]:
@@ -117,43 +113,6 @@ class PathMisfit:
             return self._forces(x, self.size)[self.path.weights > 0.0]
         except SpecError:  # numbers that do not go together
             return np.full(len(self.measured.force), np.nan)
-
-    def _slopes(self, x: np.ndarray, force: np.ndarray) -> np.ndarray:
-        columns = []
-        for k, one in enumerate(self.free):
-            if one.name == "offset.force":
-                columns.append(np.full(len(force), one.slope(float(x[k]))))
-                continue
-            unit, step = np.arange(len(x)) == k, STEP
-            while True:
-                found = self._difference(x, force, unit, step)
-                if np.isfinite(found[np.isfinite(force)]).all():
-                    break
-                step /= 4.0
-                if step < SMALLEST:
-                    said = f"are lost beside {one.name} = {one.text(one.value(float(x[k])))}, to both sides"
-                    raise SpecError("data", allowed=f"{said}: no derivative can be had", advice="narrow the ranges")
-            columns.append(found)
-        return np.stack(columns, axis=1)
-
-    def _difference(self, x: np.ndarray, force: np.ndarray, unit: np.ndarray, step: float) -> np.ndarray:
-        """By one number: central, or to one side at a bound and where the other side has no state."""
-        k = int(np.argmax(unit))
-        sides = {way: self._measured_forces(x + way * step * unit) if 0.0 <= x[k] + way * step <= 1.0 else None
-                 for way in (-1.0, 1.0)}  # fmt: skip
-        back, there = sides[-1.0], sides[1.0]
-        known = np.isfinite(force)
-        if (
-            back is not None
-            and there is not None
-            and np.isfinite(back[known]).all()
-            and np.isfinite(there[known]).all()
-        ):
-            return np.asarray((there - back) / (2.0 * step))
-        way = 1.0 if back is None or (there is not None and np.isfinite(there[known]).all()) else -1.0
-        one, two = sides[way], self._measured_forces(x + 2.0 * way * step * unit)
-        assert one is not None
-        return np.asarray(way * (4.0 * one - 3.0 * force - two) / (2.0 * step))
 
     @one_thread()
     def _forces(self, x: np.ndarray, size: int) -> np.ndarray:

@@ -9,7 +9,7 @@ from typing import Any
 import attrs
 import numpy as np
 
-from mckibben.fitting.together import AnyMisfit
+from mckibben.fitting.misfit import Compared
 
 __all__ = ["LOSSES", "Least", "candidates", "cost_of", "least", "residuals_of"]
 
@@ -32,7 +32,7 @@ class Least:
     converged: bool
 
 
-def residuals_of(misfit: AnyMisfit, x: np.ndarray, sigma: float) -> np.ndarray:
+def residuals_of(misfit: Compared, x: np.ndarray, sigma: float) -> np.ndarray:
     """Residuals over their size: those of the points, then those of what is known."""
     measured = misfit.measured
     found = [np.sqrt(measured.weights) / sigma * (misfit(x).force - measured.force)]
@@ -43,7 +43,7 @@ def residuals_of(misfit: AnyMisfit, x: np.ndarray, sigma: float) -> np.ndarray:
     return np.concatenate(found)
 
 
-def slopes_of(misfit: AnyMisfit, x: np.ndarray, sigma: float) -> np.ndarray:
+def slopes_of(misfit: Compared, x: np.ndarray, sigma: float) -> np.ndarray:
     """Their derivatives by x."""
     weight = np.sqrt(misfit.measured.weights) / sigma
     found = [weight[:, None] * misfit(x).slopes]
@@ -53,13 +53,13 @@ def slopes_of(misfit: AnyMisfit, x: np.ndarray, sigma: float) -> np.ndarray:
     return np.concatenate(found)
 
 
-def cost_of(misfit: AnyMisfit, x: np.ndarray, sigma: float) -> tuple[int, float]:
+def cost_of(misfit: Compared, x: np.ndarray, sigma: float) -> tuple[int, float]:
     """Of a start: how many points have no state, and half the sum of squares of the others."""
     residuals = residuals_of(misfit, x, sigma)
     return int(np.isnan(residuals).sum()), 0.5 * float(np.nansum(residuals**2))
 
 
-def candidates(misfit: AnyMisfit, count: int) -> list[np.ndarray]:
+def candidates(misfit: Compared, count: int) -> list[np.ndarray]:
     """Starts: the muscle as given, then points that fill the range evenly (Sobol); the same ones every time."""
     k = len(misfit.free)
     start = np.clip(misfit.start, 0.02, 0.98)
@@ -73,7 +73,7 @@ def candidates(misfit: AnyMisfit, count: int) -> list[np.ndarray]:
 
 
 def least(
-    misfit: AnyMisfit, start: np.ndarray, sigma: float, loss: str, fixed: tuple[int, float] | None = None,
+    misfit: Compared, start: np.ndarray, sigma: float, loss: str, fixed: tuple[int, float] | None = None,
     watch: Callable[[int], None] = lambda count: None,
 ) -> Least:  # fmt: skip
     """Search from a start; one of the numbers may be fixed at a value of its x.
