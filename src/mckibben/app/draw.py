@@ -54,7 +54,7 @@ def plot(
     ] = Kind.auto,
     force: Annotated[bool, typer.Option("--force", help="replace the picture if it exists")] = False,
     data: Annotated[
-        Path | None, typer.Option(metavar="FILE", help="measured points to lay over the curve: CSV, TSV or XLSX")
+        Path | None, typer.Option(metavar="FILE", help="measured points to lay over the curve: CSV, TSV, XLSX or MAT")
     ] = None,
     columns: Columns = None,
     units: Units = None,

@@ -72,16 +72,18 @@ def read_recording(
     units: Mapping[str, str] | None = None,
     absolute: bool | None = None,
     atmosphere: Any = ATMOSPHERE,
+    sheet: str | int | None = None,
 ) -> Recording:
     """Read a measured motion: a column of time, and length, pressure, force or angle over it.
 
     Args:
-        path: a CSV, TSV or XLSX file, a pandas.DataFrame or a mapping of columns, with heads such as "time [s]" and
-            "pressure [bar]".
+        path: a CSV, TSV, XLSX or MAT file, a pandas.DataFrame or a mapping of columns, with heads such as "time [s]"
+            and "pressure [bar]".
         columns: heads by quantity where they do not say it themselves, {"pressure": "p2"}.
         units: units by quantity where the heads say none, {"time": "ms"}.
         absolute: whether pressures are absolute; as the head says, gauge where it says nothing.
         atmosphere: pressure around [Pa], taken off absolute ones.
+        sheet: name or number (from 1) of a workbook's sheet, or of the struct of a MAT file.
 
     Returns:
         A `Recording`. Rows without a number are left out; time counts from 0.
@@ -103,7 +105,7 @@ def read_recording(
                 raise SpecError(
                     f"{option}.{name}", allowed="is no quantity over time", advice=nearest(str(name), known)
                 )
-    table = table_of(path, [str(name) for name in said.values()], None, None)
+    table = table_of(path, [str(name) for name in said.values()], sheet, None)
     chosen = {name: column_named(table, wanted, f"columns.{name}") for name, wanted in said.items()}
     for name in ("time", *OVER_TIME):
         found = [k for k, head in enumerate(table.heads) if k not in chosen.values() and _names(head, name)]
