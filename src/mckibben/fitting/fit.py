@@ -108,7 +108,8 @@ def fit(
         notes.append(f"the forces of the model are computed to {error:.1g} only, not to {tolerance:g}")
     about = {
         "level": level, "intervals": "profile likelihood" if profiles else "standard errors", "loss": loss,
-        "force_error": float(sigma * np.sqrt(spread.scale)), "message": best.message,
+        "force_error": float(sigma * np.sqrt(spread.scale)), "error_known": int(known is not None),
+        "message": best.message,
         "converged": int(best.converged), "evaluations": best.evaluations, "unknowns": misfit.size,
         "source": ", ".join(dict.fromkeys(one.source for one in several)), "error_estimate": error,
         "notes": "\n".join(dict.fromkeys([*notes, *(line for one in several for line in one.assumptions)])),
