@@ -20,7 +20,7 @@ _PUBLIC = {
         "AirVolume", "CurveMiss", "ForceAt", "Mass", "PressureFor", "Stroke",
     ),
     "mckibben.spec.ranged": (
-        "Diameter", "FibreSafety", "FibreTension", "ForceVariation", "JammingMargin", "Work",
+        "Diameter", "FibreSafety", "FibreTension", "ForceVariation", "JammingMargin", "StabilityMargin", "Work",
     ),
     "mckibben.spec.wishes": ("Demand", "Maximise", "Minimise"),
     "mckibben.experiments.run": ("run",),
