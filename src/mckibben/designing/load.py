@@ -23,8 +23,7 @@ __all__ = ["load"]
 
 
 def load(path: str | PathLike[str]) -> Result | Fit | Design | Chart | Motion | MotionFit | Tolerances | Dataset:
-    """What is in an `.nc` file (a result, fit, design, map, motion or tolerances, equal
-    to what was saved) or a `.zarr` store (a sweep).
+    """What is in an `.nc` file (equal to what was saved) or a `.zarr` store (a sweep).
 
     Args:
         path: the file or the store.
