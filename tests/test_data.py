@@ -368,6 +368,14 @@ def test_isometric_tests_are_told_apart_by_their_length() -> None:
     assert set(data.branches) == {"loading"}
 
 
+def test_levels_that_differ_by_rounding_are_one() -> None:
+    """As the pressures of a computed curve do."""
+    pressure = 1e5 * (1.0 + 2e-16 * np.array([0, 1, 0, 1, 1, 0, 1, 0]))
+    assert len(set(pressure.tolist())) == 2
+    table = {"pressure [Pa]": pressure, "length [mm]": np.linspace(80, 90, 8), "force [N]": np.linspace(5, 60, 8)}
+    assert mk.read_data(table).tests == ("1 bar",)
+
+
 def test_a_staircase_of_pressures_is_one_test() -> None:
     P = np.repeat([0.0, 1.0, 2.0, 3.0, 2.0, 1.0, 0.0], 10)
     h = 100.0 - 8.0 * P + np.tile(np.linspace(0, 0.1, 10), 7)

@@ -118,6 +118,25 @@ def test_safety_room_and_weight() -> None:
     assert float(worth([room], steep)[0][0]) == pytest.approx(made)
 
 
+def test_the_margin_against_bowing() -> None:
+    """1 + F/F_col by the closed form of a braid that hardly stores energy; it pushes, and the range has its least."""
+    soft = (
+        muscle().replace("chamber.law.c1", "1 Pa").replace("braid.fibre.E", "1 kPa").replace("braid.length", "200 mm")
+    )
+    contractions = np.linspace(0.25, 0.3, 4)
+    margin = mk.StabilityMargin(**AT, between="25 to 30 %")
+    forces = [mk.ForceAt(**AT, contraction=float(at)) for at in contractions]
+    found, *pushes = (float(value[0]) for value in worth([margin, *forces], soft))
+    h = 0.2 * (1.0 - contractions)
+    theta = np.arcsin(h / 0.2 * np.sin(np.deg2rad(46.0)))
+    area, steep = np.pi * (0.0125 * np.cos(theta) / np.cos(np.deg2rad(46.0))) ** 2, np.tan(theta) ** 2
+    stiffness = area / np.pi * (pushes + 2.0 * area * 1e5 + area * 1e5 * steep) * steep
+    left = 1.0 + pushes / (4.0 * np.pi**2 * stiffness / h**2)
+    assert found == pytest.approx(left.min(), abs=1e-5)
+    assert left.argmin() == 3
+    assert left.max() < 0.5  # and -0.03 at 30 %: there it bows
+
+
 def test_the_answer(best: mk.Design) -> None:
     assert best.muscle.braid.angle == best.values["braid.angle"]
     assert best.feasible

@@ -259,8 +259,6 @@ def test_bad_input(options: dict[str, Any], message: str, exact: mk.Data) -> Non
 def test_what_cannot_be_fitted(exact: mk.Data) -> None:
     with pytest.raises(mk.SpecError, match="must be what read_data gave"):
         mk.fit(START, [], FREE)
-    with pytest.raises(mk.SpecError, match="friction"):
-        mk.fit(START.replace("friction", mk.Friction(coefficient=0.2, arm="0.05 mm")), exact, FREE)
 
 
 def test_which_model_the_data_need() -> None:
@@ -424,7 +422,6 @@ def test_a_length_that_was_not_fitted_judges_a_model(two: tuple[list[mk.Muscle],
         ([MUSCLE], "are 1 for 2 sets of data"),
         ([MUSCLE, LONG, LONG], "are 3 for 2 sets of data"),
         ([], "must be a muscle, or one for each of the data"),
-        ([MUSCLE, LONG.replace("friction", mk.Friction(coefficient=0.3, arm="0.1 mm"))], "friction"),
         ([MUSCLE, LONG.replace("chamber", None)], "free.chamber.law.c1: is no number of this muscle"),
     ],
 )

@@ -11,6 +11,7 @@ from typer.testing import CliRunner
 
 import mckibben as mk
 from mckibben.app.cli import app
+from mckibben.files import hdf5, motions
 from mckibben.scatter.draw import _table
 from mckibben.scatter.given import scattering
 from mckibben.sweeps import chunk
@@ -208,3 +209,18 @@ def test_command(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     told = runner.invoke(app, ["run", "case.toml"])
     assert told.exit_code == 2
     assert "mckibben tolerances" in told.output
+
+
+def test_tolerances_are_kept(tmp_path: Path) -> None:
+    seen = found({"braid.angle": "0.5 deg", "test.length": "0.1 mm uniform"}, samples=16)
+    loaded = mk.load(mk.save(seen, tmp_path / "spread.nc"))
+    assert loaded == seen
+    assert loaded.table.equals(seen.table)
+    assert "braid.angle" in mk.save(seen, tmp_path / "spread.csv").read_text()
+
+
+def test_tolerances_without_a_state_are_kept(tmp_path: Path) -> None:
+    seen = found({"braid.angle": "0.5 deg"}, BEYOND, samples=16)
+    assert mk.load(mk.save(seen, tmp_path / "lost.nc")) == seen
+    with pytest.raises(mk.SpecError, match="holds no motion"):
+        motions.of(hdf5.opened(tmp_path / "lost.nc"), "lost.nc")

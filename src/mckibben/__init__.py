@@ -20,7 +20,7 @@ _PUBLIC = {
         "AirVolume", "CurveMiss", "ForceAt", "Mass", "PressureFor", "Stroke",
     ),
     "mckibben.spec.ranged": (
-        "Diameter", "FibreSafety", "FibreTension", "ForceVariation", "JammingMargin", "Work",
+        "Diameter", "FibreSafety", "FibreTension", "ForceVariation", "JammingMargin", "StabilityMargin", "Work",
     ),
     "mckibben.spec.wishes": ("Demand", "Maximise", "Minimise"),
     "mckibben.experiments.run": ("run",),
@@ -52,6 +52,9 @@ _PUBLIC = {
     "mckibben.motion.linear": ("bode",),
     "mckibben.motion.sizing": ("size_valve",),
     "mckibben.results.motion": ("Motion",),
+    "mckibben.data.recording": ("Recording", "read_recording"),
+    "mckibben.motionfits.fit": ("fit_motion",),
+    "mckibben.results.motionfit": ("MotionFit",),
     "mckibben.view.plot": ("plot",),
     "mckibben.view.scene": ("scene",),
     "mckibben.view.animate": ("animate",),

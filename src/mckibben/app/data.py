@@ -26,7 +26,9 @@ data = typer.Typer(no_args_is_help=True, rich_markup_mode="rich", help="Measured
 
 @command
 def check(
-    files: Annotated[list[Path], typer.Argument(metavar="FILE...", help="CSV, TSV or XLSX; several are several tests")],
+    files: Annotated[
+        list[Path], typer.Argument(metavar="FILE...", help="CSV, TSV, XLSX or MAT; several are several tests")
+    ],
     columns: Columns = None,
     units: Units = None,
     held: Held = None,

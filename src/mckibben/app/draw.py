@@ -18,11 +18,6 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
     from mckibben.data.values import Data
-    from mckibben.potential.chart import Chart
-    from mckibben.results.design import Designed
-    from mckibben.results.fit import Fitted
-    from mckibben.results.motion import Motion
-    from mckibben.results.result import Result
 
 __all__ = ["PLOT", "REPRODUCE", "plot", "reproduce"]
 
@@ -59,7 +54,7 @@ def plot(
     ] = Kind.auto,
     force: Annotated[bool, typer.Option("--force", help="replace the picture if it exists")] = False,
     data: Annotated[
-        Path | None, typer.Option(metavar="FILE", help="measured points to lay over the curve: CSV, TSV or XLSX")
+        Path | None, typer.Option(metavar="FILE", help="measured points to lay over the curve: CSV, TSV, XLSX or MAT")
     ] = None,
     columns: Columns = None,
     units: Units = None,
@@ -95,7 +90,7 @@ def plot(
         say(f"model less measured: {compare.compare(result, measured)}")
 
 
-def _figure(result: Result | Fitted | Designed | Chart | Motion, kind: Kind, measured: Data | None) -> Figure:
+def _figure(result: object, kind: Kind, measured: Data | None) -> Figure:
     import matplotlib
 
     matplotlib.use("Agg")  # draws to files only, without a window

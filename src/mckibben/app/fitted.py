@@ -63,7 +63,7 @@ def _tests(fit: Fitted) -> list[dict[str, Any]]:
 
 def as_json(fit: Fitted, seconds: float, tried: int, files: dict[str, str | None]) -> dict[str, Any]:
     """The whole fit for JSON, in SI units; None for what is not determined, and for NaN and infinity."""
-    from mckibben.results.fit import NUMBERS
+    from mckibben.results.found import NUMBERS
     from mckibben.spec.text import to_mapping
 
     data, numbers = fit.data, {}

@@ -208,9 +208,16 @@ def _content(file: Path) -> list[tuple[str, str]]:
             from mckibben.app import moved
 
             return [("file", str(file)), *moved.described(found)]
-        from mckibben.app import designed
+        from mckibben.results.design import Designed
 
-        return [("file", str(file)), *designed.described(found)]
+        if isinstance(found, Designed):
+            from mckibben.app import designed
+
+            return [("file", str(file)), *designed.described(found)]
+        rows = [("file", str(file)), ("holds", repr(found).strip("<>"))]
+        rows += [("made", f"with mckibben {found.data.attrs['mckibben_version']}")]
+        rows += [(str(name), str(row["value"])) for name, row in found.table.iterrows()]
+        return rows + [("note", note) for note in found.notes]
     result = found
     about = result.attributes
     verdicts = Counter(result.verdict)

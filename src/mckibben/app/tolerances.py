@@ -21,7 +21,13 @@ EPILOG = examples(
     'mckibben tolerances case.toml --vary "braid.angle=1 deg" --vary "chamber.thickness=10 %"',
     'mckibben tolerances case.toml --vary "braid.length=0.5 mm uniform" --of force -o spread.png',
 )
-OUTPUTS = {".csv": "table", ".png": "picture", ".pdf": "the same for print", ".svg": "the same for the web"}
+OUTPUTS = {
+    ".nc": "everything, to be loaded again",
+    ".csv": "table",
+    ".png": "picture",
+    ".pdf": "the same for print",
+    ".svg": "the same for the web",
+}
 
 
 @command
@@ -44,7 +50,9 @@ def tolerances(
     samples: Annotated[int, typer.Option(help="muscles that make the distribution, a power of 2")] = 1024,
     output: Annotated[
         Path | None,
-        typer.Option("--output", "-o", metavar="FILE", help="a table (.csv) or a picture (.png, .pdf, .svg)"),
+        typer.Option(
+            "--output", "-o", metavar="FILE", help="everything (.nc), a table (.csv) or a picture (.png, .pdf, .svg)"
+        ),
     ] = None,
     force: Force = False,
     tolerance: Annotated[float, typer.Option(help="relative error of each state, from 1e-10 to 1e-2")] = 1e-4,
@@ -97,10 +105,10 @@ def tolerances(
 def _save(found: Tolerances, output: Path, suffix: str, force: bool) -> None:
     from mckibben import disk
 
-    if suffix == ".csv":
-        from mckibben.files import table as tables
+    if suffix in (".nc", ".csv"):
+        from mckibben.files import store
 
-        tables.save_tolerances(found, output, force)
+        store.save(found, output, force)
         return
     disk.write(output, picture(found, suffix), force)
 

@@ -12,6 +12,8 @@ __all__ = ["by_label", "by_level", "levels"]
 
 _SAME = 0.025
 """Readings of one level differ by less than this part of the largest."""
+_ROUNDING = 1e-9
+"""The same of levels that were set, such as those of a computed curve, which differ by rounding."""
 _FEWEST = 3
 """Points of the smallest test."""
 _VARIES = 0.1
@@ -34,9 +36,10 @@ def levels(values: np.ndarray, nominal: bool, fewest: int = _FEWEST) -> np.ndarr
     Levels are what is left between gaps of the sorted values: `nominal` ones are equal, measured ones as wide as noise.
     """
     order = np.argsort(values, kind="stable")
-    gaps, width = np.diff(values[order]), _SAME * np.max(np.abs(values))
+    gaps, largest = np.diff(values[order]), np.max(np.abs(values))
+    width = _SAME * largest
     which = np.empty(len(values), int)
-    which[order] = np.concatenate([[0], np.cumsum(gaps > (0.0 if nominal else width))])
+    which[order] = np.concatenate([[0], np.cumsum(gaps > (_ROUNDING * largest if nominal else width))])
     counts = np.bincount(which)
     if len(counts) > _MOST or counts.min() < min(fewest, len(values)):
         return None

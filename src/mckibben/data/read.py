@@ -43,7 +43,8 @@ def read_data(
 ) -> Data:
     """Read measured curves: pressure, force, and a length, contraction or extension, of one or several tests.
 
-    CSV, TSV and text in any usual encoding, XLSX (with `pip install "mckibben[lab]"`), or a DataFrame. Quantities are
+    CSV, TSV and text in any usual encoding, XLSX (with `pip install "mckibben[lab]"`), MAT files of MATLAB (vectors of
+    the top level or of a struct, whose names are the heads: "pressure_bar"), or a DataFrame. Quantities are
     known by the heads of their columns ("Force [N]", "pressure (bar)", "length_mm", or a row of units below the heads);
     other columns are not read. Nothing is guessed in silence: what leaves a choice is an error that says how to choose,
     and what was taken for granted is in `data.assumptions`. Rows in which a number is missing are left out, and
@@ -66,7 +67,7 @@ def read_data(
         atmosphere: what to take off an absolute pressure [Pa or text].
         tests: what tells tests apart: "pressure" or "length" (each took few values), "file", or the head of a column.
             By default a column of tests, else the pressure or the length where it stays the same for many rows.
-        sheet: name or number (from 1) of a workbook's sheet.
+        sheet: name or number (from 1) of a workbook's sheet, or of the struct of a MAT file ("run", "run(2)").
         header: the line of the heads, the first line of the file being 1.
         decimal: the decimal mark, "." or ",", where numbers do not tell.
 

@@ -11,6 +11,7 @@ import attrs
 import numpy as np
 
 from mckibben.data.heads import Head, read_head, unit_of
+from mckibben.data.matlab import columns_of_mat, is_mat
 from mckibben.data.sheet import is_workbook, rows_of_sheet
 from mckibben.data.text import NUMERIC, Row, bytes_of, decoded, rows_of
 from mckibben.spec.errors import SpecError
@@ -26,7 +27,8 @@ _LOOKED_THROUGH = 300
 class Table:
     """Columns with their heads.
 
-    `lines` (rows) are the numbers of the rows in the file, from 1; `counted` is "line" for a text, else "row".
+    `lines` (rows) are the numbers of the rows in the file, from 1; `counted` is "line" for a text, "element" for
+    vectors of a MAT file, else "row".
     """
 
     source: str
@@ -53,6 +55,10 @@ def table_of(given: Any, names: Iterable[str], sheet: str | int | None, header: 
         return _of_frame(given)
     path = Path(given)
     content, name = bytes_of(path), path.name
+    if is_mat(content, name):
+        vectors, said = columns_of_mat(content, name, sheet)
+        lines = np.arange(1, len(next(iter(vectors.values()))) + 1)
+        return Table(name, tuple(map(read_head, vectors)), 0, tuple(vectors.values()), lines, "element", tuple(said))
     comments: list[Row] = []
     notes: tuple[str, ...] = ()
     if is_workbook(content):

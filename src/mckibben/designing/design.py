@@ -58,7 +58,7 @@ def design(
             [mk.NeoHookean(c1="0.1 MPa"), mk.NeoHookean(c1="0.3 MPa")].
         objective: `Maximise` or `Minimise` of a measure; several for a front. Measures: `ForceAt`, `Stroke`,
             `PressureFor`, `Work`, `ForceVariation`, `CurveMiss`, `Diameter`, `FibreTension`, `FibreSafety`,
-            `JammingMargin`, `AirVolume`, `Mass`.
+            `JammingMargin`, `StabilityMargin`, `AirVolume`, `Mass`.
         subject_to: demands, made by comparing measures: [mk.Stroke(pressure="4 bar") >= "20 %"].
         designs: how many are tried; 2000, for a front 6000, where it is left out.
         seed: of what is random. The same one gives the same answer.

@@ -15,20 +15,22 @@ if TYPE_CHECKING:
     from mckibben.fitting.answer import Fit
     from mckibben.potential.chart import Chart
     from mckibben.results.motion import Motion
+    from mckibben.results.motionfit import MotionFit
     from mckibben.results.result import Result
+    from mckibben.results.tolerances import Tolerances
 
 __all__ = ["load"]
 
 
-def load(path: str | PathLike[str]) -> Result | Fit | Design | Chart | Motion | Dataset:
-    """What is in an `.nc` file (a result, fit, design or map, equal to what was saved) or a `.zarr` store (a sweep).
+def load(path: str | PathLike[str]) -> Result | Fit | Design | Chart | Motion | MotionFit | Tolerances | Dataset:
+    """What is in an `.nc` file (equal to what was saved) or a `.zarr` store (a sweep).
 
     Args:
         path: the file or the store.
 
     Returns:
-        A `Result`, a `Fit`, a `Design`, a `Chart` or a `Motion`; for a sweep an xarray Dataset, read from
-        the disk when used.
+        A `Result`, a `Fit`, a `Design`, a `Chart`, a `Motion`, a `MotionFit` or `Tolerances`; for a sweep an xarray
+        Dataset, read from the disk when used.
 
     Raises:
         SpecError: if there is nothing, or nothing that `save` or `sweep` wrote, or a file that is damaged.
@@ -49,12 +51,15 @@ def load(path: str | PathLike[str]) -> Result | Fit | Design | Chart | Motion | 
 
     if isinstance(found, (Result, Chart, Motion)):
         return found
+    from mckibben.results.design import Designed
     from mckibben.results.fit import Fitted
 
-    if not isinstance(found, Fitted):
+    if isinstance(found, Designed):
         from mckibben.designing.answer import Design
 
         return Design(found.muscle, found.given, found.data)
-    from mckibben.fitting.answer import Fit  # here, because a result takes no solver
+    if isinstance(found, Fitted):
+        from mckibben.fitting.answer import Fit  # here, because a result takes no solver
 
-    return Fit(found.muscle, found.given, found.data, found.further)
+        return Fit(found.muscle, found.given, found.data, found.further)
+    return found

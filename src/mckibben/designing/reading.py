@@ -5,16 +5,26 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import Any
 
+import jax
 import numpy as np
 
 from mckibben.designing.places import By, Place
 from mckibben.designing.states import AtPlaces
+from mckibben.measure.bow import left_to_bow
 from mckibben.measure.mass import mass_of, over_fibres
 from mckibben.model.jamming import across
 from mckibben.model.parameters import numbers
 from mckibben.spec import Muscle, SpecError
 from mckibben.spec.measures import AirVolume, CurveMiss, ForceAt, Mass, PressureFor, Stroke
-from mckibben.spec.ranged import Diameter, FibreSafety, FibreTension, ForceVariation, JammingMargin, Work
+from mckibben.spec.ranged import (
+    Diameter,
+    FibreSafety,
+    FibreTension,
+    ForceVariation,
+    JammingMargin,
+    StabilityMargin,
+    Work,
+)  # fmt: skip
 from mckibben.spec.wishes import Measure
 
 __all__ = ["check_measure", "places_of", "value_of"]
@@ -137,6 +147,12 @@ def _room(measure: JammingMargin, seen: AtPlaces, places: list[Place]) -> np.nda
     return np.asarray(np.where(np.isfinite(r), np.minimum(room, made), np.nan))
 
 
+def _left(measure: StabilityMargin, seen: AtPlaces, places: list[Place]) -> np.ndarray:
+    p = jax.tree.map(seen.all, numbers(seen.muscle))
+    found = [left_to_bow(p, seen.at(one, "length"), seen.at(one), measure.pressure) for one in places]
+    return np.asarray(np.min(found, axis=0))
+
+
 def _air(measure: AirVolume, seen: AtPlaces, places: list[Place]) -> np.ndarray:
     tube = numbers(seen.muscle).tube
     return seen.at(places[0], "volume") - seen.all(0.0 if tube is None else tube.rubber)
@@ -149,7 +165,7 @@ def _mass(measure: Mass, seen: AtPlaces, places: list[Place]) -> np.ndarray:
 _VALUES: dict[type, Callable[[Any, AtPlaces, list[Place]], np.ndarray]] = {
     ForceAt: _force, Stroke: _stroke, PressureFor: _pressure_for, Work: _work, ForceVariation: _variation,
     CurveMiss: _miss, Diameter: _diameter, FibreTension: _tension, FibreSafety: _safety, JammingMargin: _room,
-    AirVolume: _air, Mass: _mass,
+    StabilityMargin: _left, AirVolume: _air, Mass: _mass,
 }  # fmt: skip
 
 

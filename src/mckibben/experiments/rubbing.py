@@ -44,6 +44,7 @@ class Going:
     dissipated: float = 0.0  #: since the muscle was made [J]
     iterations: int = 0
     found: Stepped | None = None  #: the last state with what it was found from
+    shares: tuple[float, ...] = ()  #: where on the last way states were found, the last being 1
 
     @classmethod
     def as_made(cls, problem: Problem) -> "Going":
@@ -54,24 +55,32 @@ class Going:
         return cls(start, outer, {name: float(value) for name, value in present.items()})
 
 
-def step_to(problem: Problem, here: Going, begin: Held, end: Held) -> Going | None:
-    """From a state at which `begin` holds, straight to `end`; in parts where crossings turn far or Newton fails."""
+def step_to(
+    problem: Problem, here: Going, begin: Held, end: Held, shares: tuple[float, ...] = ()
+) -> Going | None:  # fmt: skip
+    """From a state at which `begin` holds, straight to `end`; in parts where crossings turn far or Newton fails.
+
+    `shares` are those of a way of a muscle that is near: with the same parts, results change smoothly from muscle to
+    muscle.
+    """
     own, which = rows_of(end.names, problem.loads)
     share, part, iterations = 0.0, 1.0, here.iterations
-    now = attrs.evolve(here, iterations=0)
+    now, taken, left = attrs.evolve(here, iterations=0), [], list(shares)
     while share < 1.0:
-        if part < SMALLEST:
+        to = left[0] if left else share + part
+        if to - share < SMALLEST:
             return None
-        aim = end if share + part >= 1.0 else begin.towards(end, share + part)
+        aim = end if to >= 1.0 else begin.towards(end, to)
         targets = targets_of((aim,), problem.unit, problem.loads)[0]
         stuck = np.asarray(True)
         found = rub((problem.basis, own), problem.p, problem.b, now.state, now.outer, which, targets, stuck)
-        if not found.good or found.largest_turn > LARGEST_TURN:
-            part *= 0.5
+        if not found.good or found.largest_turn > (2.0 * LARGEST_TURN if left else LARGEST_TURN):
+            part, left = 0.5 * (to - share), []
             continue
         now = _moved(problem, now, jax.tree.map(np.asarray, found))
-        share, part = share + part, min(2.0 * part, 1.0)
-    return attrs.evolve(now, iterations=now.iterations + iterations)
+        share, part, left = to, min(2.0 * (to - share), 1.0), left[1:]
+        taken.append(min(share, 1.0))
+    return attrs.evolve(now, iterations=now.iterations + iterations, shares=tuple(taken))
 
 
 def _moved(problem: Problem, now: Going, found: Stepped) -> Going:
@@ -193,7 +202,7 @@ def _pressurised(problem: Problem, here: Going, held: Held) -> Going | None:
     if pressure is None:
         return here
     legs = [Held.of(length=here.present["length"], pressure=value) for value in (0.0, pressure)]
-    return step_to(problem, here, *legs)
+    return step_to(problem, here, legs[0], legs[1])
 
 
 def _part(problem: Problem, leg: _Leg, error: np.ndarray) -> Part:

@@ -15,7 +15,8 @@ from mckibben.files.hdf5 import opened
 from mckibben.files.stored import checked, muscle_in
 from mckibben.files.stored import write as written
 from mckibben.files.table import write
-from mckibben.results.fit import NUMBERS, POINTS, Fitted
+from mckibben.results.fit import POINTS, Fitted
+from mckibben.results.found import NUMBERS
 from mckibben.spec.errors import SpecError
 
 if TYPE_CHECKING:

@@ -1,4 +1,4 @@
-"""Saving and loading results, fits, designs, maps and motions by the ending of the file's name."""
+"""Saving and loading results, fits, designs, maps, motions and tolerances by the ending of the file's name."""
 
 from __future__ import annotations
 
@@ -14,7 +14,9 @@ if TYPE_CHECKING:
     from mckibben.results.design import Designed
     from mckibben.results.fit import Fitted
     from mckibben.results.motion import Motion
+    from mckibben.results.motionfit import MotionFit
     from mckibben.results.result import Result
+    from mckibben.results.tolerances import Tolerances
 
 __all__ = ["SUFFIXES", "check_output", "load", "load_result", "save", "suffix_of"]
 
@@ -41,14 +43,15 @@ def check_output(path: str | PathLike[str], force: bool = False) -> None:
 
 
 def save(result: Any, path: str | PathLike[str], force: bool = False) -> Path:
-    """Save a result, fit, design, map or motion: `.nc` keeps everything and can be loaded again, `.csv` is a table.
+    """Save what a call gave: `.nc` keeps everything and can be loaded again, `.csv` is a table.
 
     A table holds nothing but its head and its rows, which are states, of a fit the measured points with their
-    residuals, of a design its front, of a map a grid, of a motion what was seen over time; what was computed and
-    by what is in a text file beside it ("out.csv.txt").
+    residuals, of a design its front, of a map a grid, of a motion what was seen over time, of tolerances the numbers;
+    what was computed and by what is in a text file beside it ("out.csv.txt").
 
     Args:
-        result: what `run`, `solve`, `fit`, `design` or `chart` gave. Of a `State` its `result` is saved, and that is
+        result: what `run`, `solve`, `fit`, `design`, `chart`, `simulate`, `fit_motion` or `tolerances` gave.
+            Of a `State` its `result` is saved, and that is
             what `load` gives.
         path: the file; its ending says the format. It is written whole or not at all.
         force: replace a file that is there already.
@@ -87,6 +90,18 @@ def save(result: Any, path: str | PathLike[str], force: bool = False) -> Path:
             from mckibben.files import motions
 
             return (motions.save if whole else motions.save_csv)(result, path, force)
+        from mckibben.results.motionfit import MotionFit
+
+        if isinstance(result, MotionFit):
+            from mckibben.files import motionfits
+
+            return (motionfits.save if whole else motionfits.save_csv)(result, path, force)
+        from mckibben.results.tolerances import Tolerances
+
+        if isinstance(result, Tolerances):
+            from mckibben.files import table, tolerances
+
+            return (tolerances.save if whole else table.save_tolerances)(result, path, force)
         from mckibben.files import designs
 
         return (designs.save if whole else designs.save_csv)(result, path, force)
@@ -99,28 +114,32 @@ def save(result: Any, path: str | PathLike[str], force: bool = False) -> Path:
     return table.save_csv(result, path, force)
 
 
-def _result(given: Any) -> Result | Fitted | Designed | Chart | Motion:
+def _result(given: Any) -> Result | Fitted | Designed | Chart | Motion | MotionFit | Tolerances:
     from mckibben.potential.chart import Chart
     from mckibben.results.design import Designed
     from mckibben.results.fit import Fitted
     from mckibben.results.motion import Motion
+    from mckibben.results.motionfit import MotionFit
     from mckibben.results.result import Result, State
+    from mckibben.results.tolerances import Tolerances
 
     if isinstance(given, State):
         return given.result
-    if isinstance(given, (Result, Fitted, Designed, Chart, Motion)):
+    if isinstance(given, (Result, Fitted, Designed, Chart, Motion, MotionFit, Tolerances)):
         return given
     if hasattr(given, "to_netcdf"):
         raise SpecError(
             "save",
-            allowed="takes what run, solve, fit, design, chart or simulate gave",
+            allowed="takes what run, solve, fit, design, chart, simulate, fit_motion or tolerances gave",
             advice='write a Dataset with data.to_netcdf("x.nc")',
         )
-    raise SpecError("save", given, "must be what run, solve, fit, design, chart or simulate gave")
+    raise SpecError(
+        "save", given, "must be what run, solve, fit, design, chart, simulate, fit_motion or tolerances gave"
+    )
 
 
-def load(path: str | PathLike[str]) -> Result | Fitted | Designed | Chart | Motion:
-    """The result, fit, design, map or motion in an `.nc` file. SpecError for any other file, or a damaged one."""
+def load(path: str | PathLike[str]) -> Result | Fitted | Designed | Chart | Motion | MotionFit | Tolerances:
+    """What `save` wrote into an `.nc` file. SpecError for any other file, or a damaged one."""
     if Path(path).suffix.lower() == ".csv":
         raise SpecError(str(path), allowed="is a table only", advice="save results as .nc to load them again")
     if Path(path).suffix.lower() == ".zarr":
@@ -144,6 +163,14 @@ def load(path: str | PathLike[str]) -> Result | Fitted | Designed | Chart | Moti
         from mckibben.files import motions
 
         return motions.of(stored, str(path))
+    if hdf5.kind(stored) == "motion fit":
+        from mckibben.files import motionfits
+
+        return motionfits.of(stored, str(path))
+    if hdf5.kind(stored) == "tolerances":
+        from mckibben.files import tolerances
+
+        return tolerances.of(stored, str(path))
     return netcdf.of(stored, str(path))
 
 
@@ -153,7 +180,10 @@ def load_result(path: str | PathLike[str]) -> Result:
     from mckibben.results.result import Result
 
     if not isinstance(found, Result):
-        known = (("residuals", "fit"), ("free_length", "map"), ("consumed", "motion"))
+        known = (
+            ("quantities", "fit of a motion"), ("residuals", "fit"), ("free_length", "map"), ("consumed", "motion"),
+            ("quantiles", "set of tolerances"),
+        )  # fmt: skip
         what = next((name for has, name in known if hasattr(found, has)), "design")
         raise SpecError(str(path), allowed=f"holds a {what}, not a result", advice="open it with mckibben.load")
     return found

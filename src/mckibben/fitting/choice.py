@@ -11,7 +11,8 @@ import numpy as np
 from mckibben.data.values import Data
 from mckibben.fitting.answer import Fit
 from mckibben.fitting.fit import fit
-from mckibben.fitting.misfit import Misfit, Points
+from mckibben.fitting.misfit import Points
+from mckibben.fitting.together import misfit_of
 from mckibben.spec import Muscle, SpecError
 
 __all__ = ["Choice", "compare_models"]
@@ -76,7 +77,8 @@ def compare_models(
 
     Each test is left out in turn (of fewer than three tests, every fifth point), the others are fitted, and the forces
     of the one left out are predicted. A model with more numbers always fits better; it predicts better only where its
-    effects are in the data.
+    effects are in the data. Where a model has friction, the points at which a test turns are never left out: they
+    belong to the path of the others.
 
     Args:
         models: by a name of your own, the muscle (or one for each of the data) and what is free, as for `fit`.
@@ -103,43 +105,61 @@ def compare_models(
     several = (data,) if isinstance(data, Data) else tuple(data)
     fits = {name: fit(muscle, several, free, **options) for name, (muscle, free) in models.items()}
     tests = list(dict.fromkeys(name for one in several for name in one.tests))
+    rub = any(one.friction is not None for muscle, _ in models.values() for one in _each(muscle))
+    folds = _folds(several, tests, [_turning(one) if rub else np.zeros(len(one), bool) for one in several])
     left_out: dict[str, np.ndarray] = {}
     for name, (muscle, free) in models.items():
         misses, forces = [], []
-        for parts, rest in _folds(several, tests):
+        for parts, rest in folds:
             left = {name for one in rest.values() for name in one.tests}
             weights = {name: weight for name, weight in (options.get("weights") or {}).items() if name in left}
             known = muscle if isinstance(muscle, Muscle) else [muscle[k] for k in rest]
             found = fit(known, list(rest.values()), free, **options | {"weights": weights})
-            for k, one in parts.items():
-                misses.append(_forces(found, muscle if isinstance(muscle, Muscle) else muscle[k], one) - one.force)
-                forces.append(one.force)
+            for k, out in parts.items():
+                force = _forces(found, muscle if isinstance(muscle, Muscle) else muscle[k], several[k], out)
+                misses.append(force - several[k].force[out])
+                forces.append(several[k].force[out])
         left_out[name] = np.concatenate(misses)
     return Choice(fits, left_out, np.concatenate(forces))
 
 
-def _forces(found: Fit, muscle: Muscle, data: Data) -> np.ndarray:
-    """Forces [N] at points of a muscle with the fitted numbers, which need not be one that was fitted."""
-    misfit = Misfit(muscle, found.free, Points.of(muscle, (data,), {}), int(found.data.attrs["unknowns"]))
+def _forces(found: Fit, muscle: Muscle, data: Data, chosen: np.ndarray) -> np.ndarray:
+    """Forces [N] at some points of a muscle with the fitted numbers, which need not be one that was fitted."""
+    if muscle.friction is None:
+        data, chosen = data.where(chosen), np.ones(int(chosen.sum()), bool)
+    points = Points.of(muscle, (data,), {})
+    points = attrs.evolve(points, weights=np.where(chosen, points.weights, 0.0))
+    misfit = misfit_of((muscle,), found.free, (points,), int(found.data.attrs["unknowns"]))
     return misfit(misfit.start).force
 
 
-def _folds(several: tuple[Data, ...], tests: list[str]) -> list[tuple[dict[int, Data], dict[int, Data]]]:
-    """(left out, kept) of every fold, each by its place among the data."""
+def _each(muscle: Muscle | Sequence[Muscle]) -> tuple[Muscle, ...]:
+    return (muscle,) if isinstance(muscle, Muscle) else tuple(muscle)
+
+
+def _turning(data: Data) -> np.ndarray:
+    """The last points of the branches of each test."""
+    next_one = np.arange(1, len(data))
+    turns = (data.which[next_one] == data.which[:-1]) & (data.branches[next_one] != data.branches[:-1])
+    return np.append(turns, False)
+
+
+def _folds(
+    several: tuple[Data, ...], tests: list[str], kept: list[np.ndarray]
+) -> list[tuple[dict[int, np.ndarray], dict[int, Data]]]:
+    """(which points are left out, what is fitted) of every fold, each by its place among the data."""
     folds = []
     for k in range(len(tests) if len(tests) >= 3 else FOLDS):
-        out: dict[int, Data] = {}
-        kept: dict[int, Data] = {}
+        out: dict[int, np.ndarray] = {}
+        rest: dict[int, Data] = {}
         for place, one in enumerate(several):
             if len(tests) >= 3:
                 chosen = np.array([one.tests[which] == tests[k] for which in one.which])
             else:
-                chosen = np.arange(len(one)) % FOLDS == k
-            out[place], kept[place] = one.where(chosen), one.where(~chosen)
-        folds.append((_some(out), _some(kept)))
+                chosen = (np.arange(len(one)) % FOLDS == k) & ~kept[place]
+            if chosen.any():
+                out[place] = chosen
+            if not chosen.all():
+                rest[place] = one.where(~chosen)
+        folds.append((out, rest))
     return folds
-
-
-def _some(parts: dict[int, Data]) -> dict[int, Data]:
-    """Those with points."""
-    return {place: one for place, one in parts.items() if len(one)}

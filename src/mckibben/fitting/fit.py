@@ -8,14 +8,13 @@ from typing import Any
 import numpy as np
 
 from mckibben.data.values import Data
-from mckibben.experiments.foresee import refuse_friction
 from mckibben.fitting.answer import Fit, answer
 from mckibben.fitting.free import Free, free_numbers, is_turned, offsets_of
 from mckibben.fitting.misfit import Points
 from mckibben.fitting.notes import notes_on
 from mckibben.fitting.search import LOSSES, Least, candidates, cost_of, least
 from mckibben.fitting.together import AnyMisfit, misfit_of, told_apart
-from mckibben.fitting.uncertain import Spread, profile, spread_of
+from mckibben.fitting.uncertain import intervals_of, spread_of
 from mckibben.spec import Muscle, SpecError
 from mckibben.spec.errors import nearest
 from mckibben.units import UnitError, show, to_si
@@ -51,6 +50,10 @@ def fit(
     The sum of squares of the differences, over the size of an error, is made least within the bounds by SciPy's
     `least_squares`, with exact derivatives. What the data cannot tell is said instead of a number.
 
+    With `Friction` every test is walked along, in the order of its points, from the muscle as made: loading and
+    unloading then tell its constants beside the others. Derivatives are central differences of such paths, to some
+    1e-5; points that come in no order are refused.
+
     Args:
         muscle: what is known; the numbers that are free start from its own where these are inside the bounds. Several,
             one for each of the data, share what is free: one make in several lengths, say.
@@ -73,7 +76,8 @@ def fit(
         A `Fit`: `muscle` (of several, `muscles`), `table`, `intervals`, `correlation`, `notes`, `predict(test)`.
 
     Raises:
-        SpecError: for names, ranges or data that cannot be, and where no muscle within the bounds reaches every point.
+        SpecError: for names, ranges or data that cannot be, and where no muscle within the bounds reaches every point;
+            with friction, where a test's points come in no order.
 
     >>> muscle = mk.presets.paper()
     >>> curve = mk.run(muscle, mk.Isobaric(length="85 mm to 110 mm", pressure="1 bar", points=6))
@@ -91,21 +95,21 @@ def fit(
         raise SpecError("level", level, "must be at least 0.5 and below 1", "0.95 is usual")
     numbers = (*_shared(muscles, free, priors or {}), *offsets_of(offsets or {}))
     _check_contractions(several, numbers)
-    measured = _measured(muscles, several, weights or {})
-    count = sum(len(points.force) for points in measured)
+    misfit = misfit_of(muscles, numbers, _points(muscles, several, weights or {}), SIZES[0])
+    count = len(misfit.measured.force)
     if count + sum(one.prior is not None for one in numbers) <= len(numbers):
         said = f"has {count} points for {len(numbers)} free numbers"
         raise SpecError("data", allowed=said, advice="free fewer numbers, or measure more")
-    misfit = misfit_of(muscles, numbers, measured, SIZES[0])
     best, sigma = _best(misfit, known, loss, starts, tolerance, watch or (lambda count: None))
     spread = spread_of(best, known is not None)
-    low, high = _intervals(misfit, best, spread, sigma, loss, level, profiles)
+    low, high = intervals_of(misfit, best, spread, sigma, loss, level, profiles)
     notes, error = notes_on(misfit, best, spread), misfit.error(best.x)
     if error > tolerance:
         notes.append(f"the forces of the model are computed to {error:.1g} only, not to {tolerance:g}")
     about = {
         "level": level, "intervals": "profile likelihood" if profiles else "standard errors", "loss": loss,
-        "force_error": float(sigma * np.sqrt(spread.scale)), "message": best.message,
+        "force_error": float(sigma * np.sqrt(spread.scale)), "error_known": int(known is not None),
+        "message": best.message,
         "converged": int(best.converged), "evaluations": best.evaluations, "unknowns": misfit.size,
         "source": ", ".join(dict.fromkeys(one.source for one in several)), "error_estimate": error,
         "notes": "\n".join(dict.fromkeys([*notes, *(line for one in several for line in one.assumptions)])),
@@ -130,8 +134,6 @@ def _muscles(muscle: Muscle | Sequence[Muscle], several: tuple[Data, ...]) -> tu
     if not isinstance(muscle, Muscle) and len(muscles) != len(several):
         said = f"are {len(muscles)} for {len(several)} sets of data"
         raise SpecError("muscle", allowed=said, advice="give one muscle for each of the data, in the same order")
-    for one in muscles:
-        refuse_friction(one, "fit")
     return muscles
 
 
@@ -163,10 +165,10 @@ def _known(force_error: Any) -> float | None:
     return size
 
 
-def _measured(
+def _points(
     muscles: tuple[Muscle, ...], several: tuple[Data, ...], weights: Mapping[str, float]
 ) -> list[Points]:  # fmt: skip
-    """The points to fit, with their weights, for each muscle; a test of weight 0 is left out."""
+    """The points with their weights, for each muscle."""
     groups = [several] if len(muscles) == 1 else [(data,) for data in told_apart(muscles, several)]
     tests = dict.fromkeys(name for group in groups for data in group for name in data.tests)
     for name, weight in weights.items():
@@ -174,8 +176,7 @@ def _measured(
             raise SpecError(f"weights.{name}", allowed="is no test of these data", advice=nearest(str(name), tests))
         if not 0.0 <= float(weight) < 1e12:
             raise SpecError(f"weights.{name}", weight, "must be at least 0")
-    found = [Points.of(muscle, group, weights) for muscle, group in zip(muscles, groups, strict=True)]
-    return [points.some(points.weights > 0.0) for points in found]
+    return [Points.of(muscle, group, weights) for muscle, group in zip(muscles, groups, strict=True)]
 
 
 def _best(
@@ -236,17 +237,3 @@ def _size(misfit: AnyMisfit, x: np.ndarray) -> float:
     n, k = len(residuals), len(misfit.free)
     size = 1.4826 * float(np.median(np.abs(residuals))) * np.sqrt(n / max(n - k, 1))
     return float(max(size, 1e-9 * np.abs(measured.force).max(), 1e-12))
-
-
-def _intervals(
-    misfit: AnyMisfit, best: Least, spread: Spread, sigma: float, loss: str, level: float, profiles: bool
-) -> tuple[np.ndarray, np.ndarray]:
-    """Lower and upper ends in x, by standard errors or by profiles."""
-    from scipy.stats import t
-
-    distance = float(t.ppf(0.5 + 0.5 * level, max(len(best.residuals) - len(best.x), 1)))
-    if profiles:
-        ends = [profile(misfit, best, spread, k, sigma, loss, distance) for k in range(len(best.x))]
-        return np.array([low for low, _ in ends]), np.array([high for _, high in ends])
-    reach = distance * np.where(np.isfinite(spread.errors), spread.errors, 1.0)
-    return np.clip(best.x - reach, 0.0, 1.0), np.clip(best.x + reach, 0.0, 1.0)

@@ -19,7 +19,7 @@ from mckibben.spec.plausible import trusted
 from mckibben.spec.vary import full_name
 from mckibben.units import DISPLAY, UnitError, show, to_si
 
-__all__ = ["OFFSETS", "Free", "free_numbers", "is_turned", "offsets_of", "put_in"]
+__all__ = ["OFFSETS", "Free", "free_numbers", "is_turned", "offsets_of", "put_in", "read_prior", "read_range"]
 
 OFFSETS = {
     "length": ("m", "added to every measured length"),
@@ -93,11 +93,11 @@ def free_numbers(muscle: Muscle, free: Mapping[str, Any], priors: Mapping[str, A
             number = from_parallels(number, muscle.braid.measured_from)
         if declared.kind == "count":
             raise SpecError(f"free.{name}", given, "is a whole number", "fit once for each, and compare the errors")
-        low, high = _range(f"free.{name}", given, declared)
+        low, high = read_range(f"free.{name}", given, declared)
         one = Free(name, declared.unit, low, high, float(number), declared.meaning, declared.display)
         if not low <= one.start <= high:
             one = attrs.evolve(one, start=one.value(0.5))
-        prior = _prior(f"priors.{name}", told[name], declared.unit) if name in told else None
+        prior = read_prior(f"priors.{name}", told[name], declared.unit) if name in told else None
         found.append(attrs.evolve(one, prior=prior))
     return tuple(found)
 
@@ -155,7 +155,7 @@ def _number(field: str, given: Any, unit: str) -> float:
         raise SpecError(field, given, str(error), error.advice) from error
 
 
-def _range(field: str, given: Any, declared: Declared) -> tuple[float, float]:
+def read_range(field: str, given: Any, declared: Declared) -> tuple[float, float]:
     """Two bounds, from "30 deg to 40 deg", "30 to 40 deg" or a pair. SpecError where they are out of range."""
     ends: Any = given
     advice = 'such as "30 deg to 40 deg", or two numbers in SI'
@@ -175,7 +175,7 @@ def _range(field: str, given: Any, declared: Declared) -> tuple[float, float]:
     return bounds[0], bounds[1]
 
 
-def _prior(field: str, given: Any, unit: str) -> tuple[float, float]:
+def read_prior(field: str, given: Any, unit: str) -> tuple[float, float]:
     """Mean and standard deviation, from "0.3 MPa +- 0.1 MPa" or a pair."""
     pair = given.replace("±", "+-").split("+-") if isinstance(given, str) else given
     try:

@@ -7,8 +7,9 @@ takes a smaller step.
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
-from typing import Any
+from collections.abc import Callable, Mapping, Sequence
+from functools import cached_property
+from typing import Any, Protocol, runtime_checkable
 
 import attrs
 import numpy as np
@@ -25,7 +26,7 @@ from mckibben.solver.system import Unknowns
 from mckibben.spec import Muscle, SpecError
 from mckibben.spec.declared import evolved, numbers
 
-__all__ = ["Misfit", "Points", "Seen"]
+__all__ = ["Compared", "Misfit", "Points", "Seen"]
 
 
 @attrs.frozen(eq=False)
@@ -37,6 +38,7 @@ class Points:
     tests: np.ndarray  #: (n) names of their tests
     branches: np.ndarray  #: (n) "loading", "unloading" or "unknown"
     weights: np.ndarray  #: (n)
+    paths: np.ndarray  #: (n) which path each is on: one for every test of every set of data
 
     @classmethod
     def of(cls, muscle: Muscle, several: tuple[Data, ...], weights: Mapping[str, float]) -> Points:
@@ -47,11 +49,13 @@ class Points:
                 data.force,
                 np.array([data.tests[k] for k in data.which]),
                 data.branches.astype(str),
+                data.which + sum(len(before.tests) for before in several[:k]),
             )
-            for data in several
+            for k, data in enumerate(several)
         ]
-        points, force, tests, branches = (np.concatenate(column) for column in zip(*parts, strict=True))
-        return cls(points, force, tests, branches, np.array([float(weights.get(name, 1.0)) for name in tests.tolist()]))
+        points, force, tests, branches, paths = (np.concatenate(column) for column in zip(*parts, strict=True))
+        by_test = np.array([float(weights.get(name, 1.0)) for name in tests.tolist()])
+        return cls(points, force, tests, branches, by_test, paths)
 
     @classmethod
     def joined(cls, parts: Sequence[Points]) -> Points:
@@ -68,12 +72,36 @@ class Seen:
     """At one x: forces of the model at the measured points, as an instrument shows them, and derivatives by x."""
 
     force: np.ndarray  #: (n)
-    slopes: np.ndarray  #: (n, k)
+    by: np.ndarray | Callable[[], np.ndarray]  #: (n, k), or what computes them where that takes long
+
+    @cached_property
+    def slopes(self) -> np.ndarray:
+        """Derivatives (n, k)."""
+        return self.by() if callable(self.by) else self.by
 
     @property
     def found(self) -> np.ndarray:
         """Which points have a state."""
         return np.isfinite(self.force)
+
+
+@runtime_checkable
+class Compared(Protocol):
+    """What a search needs of a misfit."""
+
+    @property
+    def free(self) -> tuple[Free, ...]: ...
+
+    @property
+    def measured(self) -> Any:
+        """With `force` (n), what is compared, and `weights` (n)."""
+
+    @property
+    def start(self) -> np.ndarray: ...
+
+    def values(self, x: np.ndarray) -> np.ndarray: ...
+
+    def __call__(self, x: np.ndarray) -> Seen: ...
 
 
 @attrs.define(eq=False)

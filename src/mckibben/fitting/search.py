@@ -9,9 +9,9 @@ from typing import Any
 import attrs
 import numpy as np
 
-from mckibben.fitting.together import AnyMisfit
+from mckibben.fitting.misfit import Compared
 
-__all__ = ["LOSSES", "Least", "candidates", "cost_of", "least", "rows_of"]
+__all__ = ["LOSSES", "Least", "candidates", "cost_of", "least", "residuals_of"]
 
 LOSSES = ("linear", "soft_l1", "huber", "cauchy")
 """How large differences count: squared, or less than that."""
@@ -32,27 +32,34 @@ class Least:
     converged: bool
 
 
-def rows_of(misfit: AnyMisfit, x: np.ndarray, sigma: float) -> tuple[np.ndarray, np.ndarray]:
-    """Residuals over their size, and their derivatives by x: those of the points, then those of what is known."""
-    seen, measured = misfit(x), misfit.measured
-    weight = np.sqrt(measured.weights) / sigma
-    residuals, slopes = [weight * (seen.force - measured.force)], [weight[:, None] * seen.slopes]
-    values = misfit.values(x)
-    for k, one in enumerate(misfit.free):
+def residuals_of(misfit: Compared, x: np.ndarray, sigma: float) -> np.ndarray:
+    """Residuals over their size: those of the points, then those of what is known."""
+    measured = misfit.measured
+    found = [np.sqrt(measured.weights) / sigma * (misfit(x).force - measured.force)]
+    for one, value in zip(misfit.free, misfit.values(x), strict=True):
         if one.prior is not None:
             mean, sd = one.prior
-            residuals.append(np.array([(values[k] - mean) / sd]))
-            slopes.append((np.arange(len(x)) == k)[None] * one.slope(float(x[k])) / sd)
-    return np.concatenate(residuals), np.concatenate(slopes)
+            found.append(np.array([(value - mean) / sd]))
+    return np.concatenate(found)
 
 
-def cost_of(misfit: AnyMisfit, x: np.ndarray, sigma: float) -> tuple[int, float]:
+def slopes_of(misfit: Compared, x: np.ndarray, sigma: float) -> np.ndarray:
+    """Their derivatives by x."""
+    weight = np.sqrt(misfit.measured.weights) / sigma
+    found = [weight[:, None] * misfit(x).slopes]
+    for k, one in enumerate(misfit.free):
+        if one.prior is not None:
+            found.append((np.arange(len(x)) == k)[None] * one.slope(float(x[k])) / one.prior[1])
+    return np.concatenate(found)
+
+
+def cost_of(misfit: Compared, x: np.ndarray, sigma: float) -> tuple[int, float]:
     """Of a start: how many points have no state, and half the sum of squares of the others."""
-    residuals, _ = rows_of(misfit, x, sigma)
+    residuals = residuals_of(misfit, x, sigma)
     return int(np.isnan(residuals).sum()), 0.5 * float(np.nansum(residuals**2))
 
 
-def candidates(misfit: AnyMisfit, count: int) -> list[np.ndarray]:
+def candidates(misfit: Compared, count: int) -> list[np.ndarray]:
     """Starts: the muscle as given, then points that fill the range evenly (Sobol); the same ones every time."""
     k = len(misfit.free)
     start = np.clip(misfit.start, 0.02, 0.98)
@@ -66,7 +73,7 @@ def candidates(misfit: AnyMisfit, count: int) -> list[np.ndarray]:
 
 
 def least(
-    misfit: AnyMisfit, start: np.ndarray, sigma: float, loss: str, fixed: tuple[int, float] | None = None,
+    misfit: Compared, start: np.ndarray, sigma: float, loss: str, fixed: tuple[int, float] | None = None,
     watch: Callable[[int], None] = lambda count: None,
 ) -> Least:  # fmt: skip
     """Search from a start; one of the numbers may be fixed at a value of its x.
@@ -90,10 +97,10 @@ def least(
         nonlocal count
         count += 1
         watch(count)
-        return rows_of(misfit, whole(part), sigma)[0]
+        return residuals_of(misfit, whole(part), sigma)
 
     def jacobian(part: np.ndarray) -> Any:
-        return rows_of(misfit, whole(part), sigma)[1][:, moving]
+        return slopes_of(misfit, whole(part), sigma)[:, moving]
 
     begin = np.clip(start[moving], 1e-6, 1.0 - 1e-6)
     found, by = residuals(begin), _loss(loss, n)

@@ -10,6 +10,7 @@ import numpy as np
 from mckibben.data.values import Data
 from mckibben.fitting.free import Free
 from mckibben.fitting.misfit import Misfit, Points, Seen
+from mckibben.fitting.paths import PathMisfit
 from mckibben.spec import Muscle
 
 __all__ = ["AnyMisfit", "Together", "misfit_of", "told_apart"]
@@ -19,7 +20,7 @@ __all__ = ["AnyMisfit", "Together", "misfit_of", "told_apart"]
 class Together:
     """One misfit after another, for a search that sees all their points."""
 
-    parts: tuple[Misfit, ...]
+    parts: tuple[Misfit | PathMisfit, ...]
 
     @property
     def free(self) -> tuple[Free, ...]:
@@ -72,16 +73,23 @@ class Together:
     def __call__(self, x: np.ndarray) -> Seen:
         """Forces and derivatives at x."""
         seen = [part(x) for part in self.parts]
-        return Seen(np.concatenate([one.force for one in seen]), np.concatenate([one.slopes for one in seen]))
+        force = np.concatenate([one.force for one in seen])
+        return Seen(force, lambda: np.concatenate([one.slopes for one in seen]))
 
 
-AnyMisfit = Misfit | Together
+AnyMisfit = Misfit | PathMisfit | Together
 
 
-def misfit_of(muscles: Sequence[Muscle], free: tuple[Free, ...], measured: Sequence[Points], size: int) -> AnyMisfit:
-    """Of one muscle, or of several with the points of each."""
-    parts = tuple(Misfit(muscle, free, points, size) for muscle, points in zip(muscles, measured, strict=True))
+def misfit_of(muscles: Sequence[Muscle], free: tuple[Free, ...], points: Sequence[Points], size: int) -> AnyMisfit:
+    """Of one muscle, or of several with the points of each; points of no weight are not compared."""
+    parts = tuple(_of_one(muscle, free, some, size) for muscle, some in zip(muscles, points, strict=True))
     return parts[0] if len(parts) == 1 else Together(parts)
+
+
+def _of_one(muscle: Muscle, free: tuple[Free, ...], points: Points, size: int) -> Misfit | PathMisfit:
+    if muscle.friction is not None:
+        return PathMisfit(muscle, free, points, size)
+    return Misfit(muscle, free, points.some(points.weights > 0.0), size)
 
 
 def told_apart(muscles: Sequence[Muscle], several: Sequence[Data]) -> list[Data]:

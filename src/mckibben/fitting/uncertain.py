@@ -8,10 +8,10 @@ from __future__ import annotations
 import attrs
 import numpy as np
 
+from mckibben.fitting.misfit import Compared
 from mckibben.fitting.search import Least, least
-from mckibben.fitting.together import AnyMisfit
 
-__all__ = ["OPEN", "Spread", "members", "profile", "spread_of"]
+__all__ = ["OPEN", "Spread", "intervals_of", "members", "profile", "spread_of"]
 
 OPEN = 0.5
 """Standard error along a direction, in parts of the ranges, from which on the data do not determine it."""
@@ -70,7 +70,7 @@ def spread_of(found: Least, known_size: bool) -> Spread:
 
 
 def profile(
-    misfit: AnyMisfit, best: Least, spread: Spread, k: int, sigma: float, loss: str, distance: float
+    misfit: Compared, best: Least, spread: Spread, k: int, sigma: float, loss: str, distance: float
 ) -> tuple[float, float]:
     """x at which the sum of squares, least for number k held there, has grown by `distance` standard errors squared.
 
@@ -99,3 +99,17 @@ def profile(
             inside, step = outside, 2.0 * step
         ends.append(end)
     return ends[0], ends[1]
+
+
+def intervals_of(
+    misfit: Compared, best: Least, spread: Spread, sigma: float, loss: str, level: float, profiles: bool
+) -> tuple[np.ndarray, np.ndarray]:
+    """Lower and upper ends in x, by standard errors or by profiles."""
+    from scipy.stats import t
+
+    distance = float(t.ppf(0.5 + 0.5 * level, max(len(best.residuals) - len(best.x), 1)))
+    if profiles:
+        ends = [profile(misfit, best, spread, k, sigma, loss, distance) for k in range(len(best.x))]
+        return np.array([low for low, _ in ends]), np.array([high for _, high in ends])
+    reach = distance * np.where(np.isfinite(spread.errors), spread.errors, 1.0)
+    return np.clip(best.x - reach, 0.0, 1.0), np.clip(best.x + reach, 0.0, 1.0)

@@ -14,15 +14,15 @@ from mckibben.units import show
 if TYPE_CHECKING:
     import xarray as xr
 
-__all__ = ["QUANTILES", "Tolerances", "dataset"]
+__all__ = ["OF_NUMBERS", "OF_RESULTS", "QUANTILES", "SHARES", "Tolerances", "dataset"]
 
 QUANTILES = (0.05, 0.5, 0.95)
 """What the samples are summed up by."""
-_OF_NUMBERS = {"value": float, "tolerance": float, "deviation": float, "distribution": str, "unit": str,
+OF_NUMBERS = {"value": float, "tolerance": float, "deviation": float, "distribution": str, "unit": str,
                "display": str, "shown": str, "said": str, "meaning": str, "assumed": bool}  # fmt: skip
 """What is known of each number: its value, its tolerance as given and as a standard deviation [SI], and so on."""
-_OF_RESULTS = {"value": float, "unit": str, "meaning": str}
-_SHARES = {
+OF_RESULTS = {"value": float, "unit": str, "meaning": str}
+SHARES = {
     "effect": "change of the result for one standard deviation of the number, SI unit of the result",
     "share": "share of the variance of the result by derivatives",
     "first": "share of the variance by this number alone, by sampling (Sobol index of first order)",
@@ -40,13 +40,13 @@ def dataset(
 ) -> xr.Dataset:
     """The Dataset of a `Tolerances`; `samples` are the numbers drawn (sample, number) and the results there."""
     coords: dict[str, Any] = {"number": list(numbers), "result": list(results)}
-    for dimension, known, kinds in (("number", numbers, _OF_NUMBERS), ("result", results, _OF_RESULTS)):
+    for dimension, known, kinds in (("number", numbers, OF_NUMBERS), ("result", results, OF_RESULTS)):
         for kind, form in kinds.items():
             coords[f"{dimension}_{kind}"] = (dimension, np.array([item[kind] for item in known.values()], form))
     for array in (*shares.values(), *samples):
         array.flags.writeable = False
     variables: dict[str, Any] = {
-        name: (("number", "result"), shares[name], {"long_name": meaning}) for name, meaning in _SHARES.items()
+        name: (("number", "result"), shares[name], {"long_name": meaning}) for name, meaning in SHARES.items()
     }
     variables["drawn"] = (("sample", "number"), samples[0], {"long_name": "numbers of each sample, SI units"})
     said = "results of each sample, SI units; NaN where the state is not stable"
@@ -78,6 +78,15 @@ class Tolerances(Shown):
     muscle: Muscle
     test: Test
     data: xr.Dataset
+
+    def __eq__(self, other: object) -> bool:
+        if not isinstance(other, Tolerances):
+            return NotImplemented
+        same = self.muscle == other.muscle and self.test == other.test
+        return same and bool(self.data.identical(other.data))
+
+    def __hash__(self) -> int:
+        return hash((self.muscle, self.test))
 
     @property
     def results(self) -> tuple[str, ...]:

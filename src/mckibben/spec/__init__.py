@@ -41,7 +41,15 @@ from mckibben.spec.loads import FixedEnd, Load, Pulley, Viscosity
 from mckibben.spec.measures import AirVolume, CurveMiss, ForceAt, Mass, PressureFor, Stroke
 from mckibben.spec.muscle import Braid, Joint, Muscle
 from mckibben.spec.path import Path, PathMode
-from mckibben.spec.ranged import Diameter, FibreSafety, FibreTension, ForceVariation, JammingMargin, Work
+from mckibben.spec.ranged import (
+    Diameter,
+    FibreSafety,
+    FibreTension,
+    ForceVariation,
+    JammingMargin,
+    StabilityMargin,
+    Work,
+)
 from mckibben.spec.reference import reference_markdown
 from mckibben.spec.rig import Rig
 from mckibben.spec.series import Series
@@ -106,6 +114,7 @@ __all__ = [
     "Side",
     "Sine",
     "SpecError",
+    "StabilityMargin",
     "Step",
     "Stiffening",
     "Stroke",

@@ -10,7 +10,16 @@ from mckibben.spec.declared import Reads
 from mckibben.spec.errors import SpecError
 from mckibben.spec.fields import choice, spec
 
-__all__ = ["Diameter", "FibreSafety", "FibreTension", "ForceVariation", "JammingMargin", "Per", "Work"]
+__all__ = [
+    "Diameter",
+    "FibreSafety",
+    "FibreTension",
+    "ForceVariation",
+    "JammingMargin",
+    "Per",
+    "StabilityMargin",
+    "Work",
+]
 
 
 class Per(StrEnum):
@@ -184,3 +193,31 @@ class JammingMargin(Ranged):
     meaning: ClassVar[str] = "room between fibres"
     unit: ClassVar[str] = "1"
     low: ClassVar[float] = -1.0
+
+
+@measure
+@spec("stability-margin")
+class StabilityMargin(Ranged):
+    """How far a muscle is from bowing sideways at one pressure: 1 + F/F_col, at its least over the range.
+
+    F_col is the push from which the muscle bows like a column whose ends neither turn nor move aside, by its own
+    bending stiffness (Euler; theory page, the muscle as a column). 1 is a muscle that neither pulls nor pushes, 0 one
+    that bows; 0.5 pushes with half of what it bears, which is a safety factor of 2; one that pulls has more than 1. A
+    muscle whose fittings can swivel bears a quarter: ask for 0.75 and more then. It is an upper estimate, and means
+    little for muscles shorter than five diameters. The axisymmetric shape needs no margin of its own: a design with a
+    state that is not stable does not fulfil what is asked.
+
+    Args:
+        pressure: gauge pressure [Pa].
+        between: the contractions, such as "0 to 20 %"; from as made to the free contraction where it is left out.
+
+    Raises:
+        SpecError: for a value out of range.
+
+    >>> (mk.StabilityMargin(pressure="4 bar", between="-10 to 0 %") >= 0.5).said
+    'share of the bowing push left from -10 % to 0 % contraction at 4 bar at least 0.5'
+    """
+
+    kind: ClassVar[str] = "stability-margin"
+    meaning: ClassVar[str] = "share of the bowing push left"
+    unit: ClassVar[str] = "1"

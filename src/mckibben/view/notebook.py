@@ -15,6 +15,7 @@ from mckibben.results.design import Designed
 from mckibben.results.effects import Effects
 from mckibben.results.fit import Fitted
 from mckibben.results.motion import Motion
+from mckibben.results.motionfit import MotionFit
 from mckibben.results.result import Result, State
 from mckibben.results.rows import COLUMNS, rows
 from mckibben.results.sensitivity import Sensitivity
@@ -86,6 +87,10 @@ def _fit(fit: Fitted) -> str:
     return _part(repr(fit).strip("<>"), _frame(fit.table), fit.notes) + _image(plot(fit), "the fit")
 
 
+def _motion_fit(fit: MotionFit) -> str:
+    return _part(repr(fit).strip("<>"), _frame(fit.table), fit.notes) + _image(plot(fit), "the fit")
+
+
 def _design(design: Designed) -> str:
     tables = _frame(design.table) + _frame(design.limits)
     return _part(repr(design).strip("<>"), tables, design.notes) + _image(plot(design), "the design")
@@ -124,6 +129,7 @@ def _data(data: Data) -> str:
 _KINDS: dict[Any, Callable[[Any], str]] = {
     Muscle: _muscle, Result: _result, State: _state, Fitted: _fit, Designed: _design, Tolerances: _tolerances,
     Sensitivity: _sensitivity, Effects: _effects, Data: _data, Chart: _chart, Motion: _motion,
+    MotionFit: _motion_fit,
     tuple(TESTS.values()): _test, spec_classes(): _part_of_muscle,
 }  # fmt: skip
 """What shows each kind of value."""

@@ -14,6 +14,7 @@ from mckibben.results.design import Designed
 from mckibben.results.effects import Effects
 from mckibben.results.fit import Fitted
 from mckibben.results.motion import Motion
+from mckibben.results.motionfit import MotionFit
 from mckibben.results.result import Result, State
 from mckibben.results.sensitivity import Sensitivity
 from mckibben.results.tolerances import Tolerances
@@ -28,6 +29,7 @@ from mckibben.view.effects import bars
 from mckibben.view.fit import fitted
 from mckibben.view.measured import overlay
 from mckibben.view.motion import moved
+from mckibben.view.motionfit import followed
 from mckibben.view.tolerances import scatter
 from mckibben.view.tornado import tornado
 
@@ -57,7 +59,8 @@ def plot(result: Any, kind: str = "auto", data: Any = None) -> Figure:
     tornado chart, tolerances as distributions with the part of each number, effects as bars, a fit as its forces over
     the measured ones, with what is left, a design as the force of the best over its contraction with what was demanded,
     or as its front, a map that `chart` made as its forces over contraction, and over the range with its edges, a
-    motion as what moves, pressure, force and air over time, a frequency response as gain and phase.
+    motion as what moves, pressure, force and air over time, a fit of one as measured values over it with what is left,
+    a frequency response as gain and phase.
 
     Args:
         result: what one of these calls gave, or several results of one kind of test by their names, as
@@ -96,7 +99,7 @@ def plot(result: Any, kind: str = "auto", data: Any = None) -> Figure:
         return _family(result, kind)
     own: dict[type, Callable[[Any], Figure]] = {
         Sensitivity: tornado, Tolerances: scatter, Effects: bars, Fitted: fitted, Designed: designed,
-        Chart: charted, Motion: moved, Bode: answered,
+        Chart: charted, Motion: moved, MotionFit: followed, Bode: answered,
     }  # fmt: skip
     draw = next((draw for kinds, draw in own.items() if isinstance(result, kinds)), None) or _of_dataset(result)
     if kind != "auto":

@@ -1,0 +1,1 @@
+"""From measured motions to the rig: valves, viscosity, loads."""
