@@ -280,3 +280,13 @@ def test_wrong_input(changes: dict[str, Any], said: str) -> None:
 def test_the_papers_mesh_has_the_radius_of_the_braid() -> None:
     with pytest.raises(mk.SpecError, match="in rigid fittings of its own radius"):
         mk.run(ended(NARROW), mk.Isometric(length="110 mm", pressure="1 bar"), discretisation="paper")
+
+
+def test_a_sweep_over_them_is_single_runs() -> None:
+    test = mk.Isobaric(pressure="1 bar", length="100 mm to 95 mm", points=2)
+    one = mk.presets.paper().replace("end_radii", ["11 mm"])
+    found = mk.sweep(one, test, over={"end_radii": ["11 mm", "12 mm"]})
+    for row, radius in zip(found.force.values, ("11 mm", "12 mm"), strict=True):
+        np.testing.assert_allclose(row, mk.run(one.replace("end_radii", radius), test).force, rtol=1e-8)
+    with pytest.raises(mk.SpecError, match=r"end_radii\[0\]: is no field that can be varied; did you mean .end_radii."):
+        mk.sweep(one, test, over={"end_radii[0]": ["11 mm", "12 mm"]})

@@ -117,6 +117,15 @@ def test_home_made(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pyte
     assert (tmp_path / "out" / "home_made.png").stat().st_size > 10_000
 
 
+def test_gap(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]) -> None:
+    with warnings.catch_warnings():
+        rows = printed("gap.py", tmp_path, monkeypatch, capsys)
+    # as on the theory page
+    assert rows[0] == pytest.approx([95.0, 0.1370, 0.1683], abs=6e-5)
+    assert rows[1] == pytest.approx([6.336, 0.0, 5.684, 0.12, 7.207, 0.2], abs=HALF_A_DIGIT)
+    assert (tmp_path / "out" / "gap.png").stat().st_size > 10_000
+
+
 def test_fit_bench(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]) -> None:
     rows = printed("fit_bench.py", tmp_path, monkeypatch, capsys)
     angle, c1 = rows[0][0], rows[1][1]

@@ -8,7 +8,7 @@ from numpy.testing import assert_allclose
 from scipy.stats import t as student
 
 import mckibben as mk
-from mckibben.fitting.free import Free, free_numbers
+from mckibben.fitting.free import Free, free_numbers, put_in
 from mckibben.fitting.misfit import Misfit, Points
 from mckibben.fitting.search import least
 from mckibben.fitting.uncertain import members
@@ -210,6 +210,21 @@ def test_ranges_with_muscles_that_do_not_reach(exact: mk.Data) -> None:
     assert_allclose(fit.values["braid.angle"], np.radians(37.0), rtol=1e-6)
     with pytest.raises(mk.SpecError, match=r"points are beyond reach of all 4 muscles tried, such as .* mm at 0.4 bar"):
         mk.fit(TURNED, exact, {"braid.angle": "60 deg to 70 deg"}, starts=4)
+
+
+def test_one_of_several_numbers_has_a_range() -> None:
+    """A field that holds a list: each number of it by its place, read with its unit and checked like the whole."""
+    narrow = mk.presets.paper().replace("end_radii", ["11 mm", "12 mm"])
+    first, last = free_numbers(narrow, {"end_radii[1]": "9 mm to 12.5 mm", "end_radii[0]": (0.01, 0.012)}, {})
+    assert (first.name, first.low, first.high, first.start) == ("end_radii[1]", 0.009, 0.0125, 0.012)
+    assert (last.low, last.high, last.start) == (0.01, 0.012, 0.011)
+    changed = put_in(narrow, (first, last), np.array([0.0105, 0.0115]))
+    assert changed.end_radii == (0.0115, 0.0105)
+    ogden = narrow.replace("chamber.law", mk.Ogden(mu=["20 kPa", "5 kPa"], alpha=[2.0, 4.0]))
+    (mu,) = free_numbers(ogden, {"chamber.law.mu[1]": "1 to 10 kPa"}, {})
+    assert_allclose((mu.low, mu.high), (1e3, 1e4))
+    with pytest.raises(mk.SpecError, match=r"free\.end_radii\[0\] = -1 mm"):
+        free_numbers(narrow, {"end_radii[0]": "-1 mm to 12 mm"}, {})
 
 
 def test_prediction(found: mk.Fit) -> None:

@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 
 import mckibben as mk
+from mckibben.measure.survey import error_bound, read_states
 from mckibben.model.cylinder import cylinder_force
 from mckibben.model.energy import lagrangian, stored, works
 from mckibben.model.gap import borne, inflated, relaxed_density
@@ -17,6 +18,7 @@ from mckibben.model.point import Point
 from mckibben.results.result import Result
 from mckibben.results.told import columns
 from mckibben.solver.bench import Bench
+from mckibben.solver.equilibrium import Equilibrium
 from mckibben.solver.find import equilibrium, find
 from mckibben.solver.held import Held
 from mckibben.solver.problem import Problem
@@ -201,10 +203,36 @@ def test_a_held_volume_gives_the_same_states(curve: Result) -> None:
     volumes = [f"{value!r} m^3" for value in curve.volume[k].tolist()]
     again = mk.run(MUSCLE, mk.Step(length="95 mm", volume=volumes))
     # where it touches in part, the kink lies between two points, and the volume is less sure than the force
-    for rows, close in (([0, 1, 3], 1e-9), ([2], 2e-4)):
+    for rows, close in (([0, 1, 3], 1e-9), ([2], 1e-4)):
         np.testing.assert_allclose(again.pressure[rows], curve.pressure[k][rows], rtol=close)
         np.testing.assert_allclose(again.force[rows], curve.force[k][rows], rtol=close)
+    assert 1e-6 < float(again.data["error_estimate"][2]) < 1e-4
+    assert float(again.data["error_estimate"][[0, 1, 3]].max()) < 1e-7
     assert set(again.verdict) == {"stable"}
+
+
+@pytest.mark.experiments
+def test_the_estimate_knows_the_kink(curve: Result) -> None:
+    """Where touch begins between two points the error is of second order, and far above that of the series."""
+    P, bench = 0.145e5, Bench.of(MUSCLE)
+    held = Held.of(length=95e-3, pressure=P)
+    b = bench.placement(held)
+    coarse, fine = (find(bench.problem(size, b), held) for size in (24, 48))
+    full = np.pi * R0**2 * P
+    off = abs(coarse.force - fine.force) / (abs(fine.force) + full)
+    assert 100.0 * errors_of(coarse, held, kinks=False) < off < errors_of(coarse, held) < 10.0 * off
+    volume = Held.of(length=95e-3, volume=fine.volume)
+    other = find(coarse.problem, volume, coarse)
+    off = abs(other.pressure / P - 1.0)
+    assert off < errors_of(other, volume) < 10.0 * off
+    assert errors_of(other, volume) > errors_of(other, held)
+
+
+def errors_of(state: Equilibrium, held: Held, kinks: bool = True) -> float:
+    seen = read_states(state.problem, state.u[None], state.loads[None], False)[0]
+    assert seen.missed is not None
+    more = seen.missed.under(held.names) if kinks else 0.0
+    return float(error_bound(seen.conserved_variation, seen.coefficient_tail, kinks=more)[0])
 
 
 @pytest.mark.experiments
@@ -212,7 +240,8 @@ def test_sealed_gas_has_the_volume_of_the_air(curve: Result) -> None:
     """Beside rubber: (P + 1 atm) V of the air stays, as the tube swells in the gap and in touch."""
     filled = mk.Step(length="95 mm", pressure="0 to 0.24 bar", points=7)
     sealed = mk.Step(length="95 mm to 90 mm", gas="isothermal", points=7)
-    after = mk.run(MUSCLE, mk.Protocol([filled, sealed])).data.isel(step=slice(7, None))
+    # no more unknowns than the volume of its gas asks for: one state on the way touches in part
+    after = mk.run(MUSCLE, mk.Protocol([filled, sealed]), tolerance=1e-5).data.isel(step=slice(7, None))
     amount = (after["pressure"] + 101325.0) * after["air_volume"]
     np.testing.assert_allclose(amount, float(amount[0]), rtol=1e-6)
     assert float(after["pressure"].max() - after["pressure"].min()) > 300.0

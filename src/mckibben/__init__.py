@@ -26,6 +26,7 @@ _PUBLIC = {
     "mckibben.experiments.run": ("run",),
     "mckibben.experiments.solve": ("solve",),
     "mckibben.experiments.dead_zone": ("DeadZone", "dead_zone"),
+    "mckibben.experiments.burst": ("Burst", "burst_pressures"),
     "mckibben.experiments.limits": ("Limits", "least_pressure", "limits", "working_range"),
     "mckibben.measure.caution": ("MuscleWarning", "cautions"),
     "mckibben.sweeps.sweep": ("sweep",),

@@ -6,6 +6,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
+from attrs import asdict
 
 from mckibben.app.console import COMPLETE, INCOMPLETE, command, examples, say, show_json, table
 from mckibben.app.options import AsJson, Force, Quiet, Tolerance
@@ -18,7 +19,11 @@ if TYPE_CHECKING:
 
 __all__ = ["FORCE_MAP", "LIMITS", "WORKING_RANGE", "force_map", "limits", "working_range"]
 
-LIMITS = examples('mckibben limits case.toml --pressure "1 bar"', 'mckibben limits case.toml --pressure "1 bar" --json')
+LIMITS = examples(
+    'mckibben limits case.toml --pressure "1 bar"',
+    'mckibben limits case.toml --pressure "1 bar" --load "50 N"',
+    'mckibben limits case.toml --pressure "1 bar" --json',
+)
 WORKING_RANGE = examples(
     'mckibben working-range case.toml --pressure "0 to 3 bar" --points 4 -o range.png',
     'mckibben working-range case.toml --pressure "1 bar" --pressure "2 bar" -o range.csv',
@@ -49,11 +54,19 @@ def _muscle(case: Path, overrides: list[str] | None) -> Muscle:
 def limits(
     case: Case,
     pressure: Annotated[str, typer.Option(metavar="PRESSURE", help='gauge pressure, such as "1 bar"')],
+    length: Annotated[
+        str | None, typer.Option(metavar="LENGTH", help="where it would burst; at rest if not given")
+    ] = None,
+    contraction: Annotated[
+        str | None, typer.Option(metavar="CONTRACTION", help='in place of the length, such as "10 %"')
+    ] = None,
+    load: Annotated[str | None, typer.Option(metavar="FORCE", help='in place of either, such as "50 N"')] = None,
     overrides: Overrides = None,
     as_json: AsJson = False,
 ) -> int:
-    """Show the shortest and longest length of a muscle at a pressure, and how hard it can push.
+    """Show the shortest and longest length of a muscle at a pressure, how hard it can push, and where it would burst.
 
+    A pressure at which it would burst is an estimate: see what it takes for granted with --json.
     The exit code is 3 if there is no stable state even at the length as made.
     """
     muscle = _muscle(case, overrides)
@@ -62,14 +75,28 @@ def limits(
     with solving("limits", hidden=as_json):
         from mckibben.experiments import limits as experiment
 
-        found = experiment.limits(muscle, pressure=pressure)
+        at: dict[str, Any] = {"length": length, "contraction": contraction, "force": load}
+        if all(value is None for value in at.values()):
+            at["length"] = float(muscle.rest_length)
+        found = experiment.limits(muscle, pressure=pressure, **at)
+    burst = found.burst
     values = {name: getattr(found, name) for name in ("pressure", *UNITS)}
     if as_json:
-        show_json({name: None if value != value else value for name, value in values.items()})
+        told = {} if burst is None else {"burst": _without_nan(asdict(burst))}
+        show_json(_without_nan(values) | told)
     else:
         rows = [(name, _text(value, UNITS[name][0]), UNITS[name][1]) for name, value in values.items() if name in UNITS]
+        if burst is not None:
+            rows += [
+                ("fibre_breaks", _text(burst.fibre, "Pa"), burst.fibre_reason or f"{BREAKS}, at {burst.held}"),
+                ("wall_bulges", _text(burst.wall, "Pa"), burst.wall_reason or f"{BULGES}, at {burst.held}"),
+            ]
         say(table(("limit", "value", "meaning"), rows, title=f"Limits at {_text(found.pressure, 'Pa')}", whole=(0,)))
     return COMPLETE if found.shortest == found.shortest else INCOMPLETE
+
+
+def _without_nan(values: dict[str, Any]) -> dict[str, Any]:
+    return {name: None if value != value else value for name, value in values.items()}
 
 
 UNITS = {
@@ -83,6 +110,8 @@ UNITS = {
     "force_extremum_length": ("m", "length there"),
 }
 """What `limits` finds: unit and meaning."""
+BREAKS = "estimated pressure from which the tension of a fibre exceeds its breaking force"
+BULGES = "estimated pressure from which the wall bulges through between fibres by half a circle, and may burst"
 
 
 def _text(value: Any, unit: str) -> str:

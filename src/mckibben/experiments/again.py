@@ -81,7 +81,7 @@ class _Search:
         states = follow_to(here.state.problem, path, here.state, min(LOOSE, self.tolerance))[1:]
         for i, one in zip(way, states, strict=False):
             seen = look(equilibrium(here.state.problem, one.u, one.loads, one.iterations), self.part.path[i])
-            if not seen.good or estimated_error(seen.state) > self.tolerance:
+            if not seen.good or estimated_error(seen.state, self.part.path[i]) > self.tolerance:
                 return
             self.keep(i, seen.verdict, seen)
 

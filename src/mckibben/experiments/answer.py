@@ -3,7 +3,7 @@
 import attrs
 import numpy as np
 
-from mckibben.experiments.limits import holding
+from mckibben.experiments.holding import holding
 from mckibben.measure.judge import Judgement
 from mckibben.results.verdict import Shape, Verdict
 from mckibben.search.elsewhere import Else, Way, look_elsewhere, way_there

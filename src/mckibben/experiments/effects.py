@@ -68,7 +68,9 @@ def effects(
     Stretch and roll of the fibres, where the wall lies and how thick it is, a gap between tube and braid, fittings that
     give way or have a radius of their own, friction, and the ends. What a muscle already has is switched off for the
     comparison; the rest is switched on, one by one. Friction has no one state: what is told is half of what lies
-    between the forces as the muscle lengthens and as it shortens.
+    between the forces as the muscle lengthens and as it shortens. A gap has a row where the chamber lies inside, end
+    radii where the muscle has them: no others are known. Bellows have none: without their folds they would be another
+    tube, whose wall and law the muscle does not tell, so compare two muscles for that.
 
     Args:
         muscle: the specification.

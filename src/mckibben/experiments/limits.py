@@ -8,10 +8,11 @@ from typing import TYPE_CHECKING, Any
 import attrs
 import numpy as np
 
+from mckibben.experiments.burst import Burst, burst_pressures
 from mckibben.experiments.foresee import refuse_friction
+from mckibben.experiments.holding import FIRST, SIZE, TRIALS, holding
 from mckibben.measure.caution import MuscleWarning
-from mckibben.results.verdict import Shape
-from mckibben.search.walk import BranchEnd, branch_end, look
+from mckibben.search.walk import BranchEnd, branch_end
 from mckibben.solver.bench import Bench
 from mckibben.solver.find import find
 from mckibben.solver.held import Held
@@ -22,13 +23,6 @@ from mckibben.units import show
 
 if TYPE_CHECKING:
     import xarray as xr
-
-SIZE = 48
-"""Half-length unknowns: limits of the reference muscle to 1e-8."""
-TRIALS = 12
-"""Pressures tried upwards when one is sought that holds a length, each four times the last."""
-FIRST = 1e3
-"""The first of these above the pressure at which it starts [Pa]."""
 
 
 class Pressure(float):
@@ -59,6 +53,7 @@ class Limits:
             fittings give way, which sets no such limit.
         force_extremum: least force [N], that is the largest push, on the way to the shortest length.
         force_extremum_length: length there [m].
+        burst: where a length or a force was given: pressures from which it would burst, a `Burst`.
 
     >>> found = mk.limits(mk.presets.paper(), pressure="1 bar")
     >>> round(1e3 * found.shortest, 1), round(1e3 * found.longest, 1)  # mm
@@ -76,15 +71,21 @@ class Limits:
     longest: float  #: full extension: no equilibrium at or beyond it
     force_extremum: float  #: largest compressive force (least force) on the way to the shortest length
     force_extremum_length: float  #: length there
+    burst: Burst | None = None  #: pressures from which it would burst, at a length or under a force
 
 
 @one_thread()
-def limits(muscle: Muscle, *, pressure: Any) -> Limits:
+def limits(muscle: Muscle, *, pressure: Any, length: Any = None, contraction: Any = None, force: Any = None) -> Limits:
     """Limits of a muscle at one gauge pressure, on the path from its initial length to shorter ones.
+
+    With a length, a contraction or a force also the pressures from which it would burst there (`burst_pressures`).
 
     Args:
         muscle: the specification.
         pressure: gauge pressure [Pa], a number or text with a unit.
+        length: distance between the fittings [m] at which it would burst, likewise.
+        contraction: in place of it: 1 - h/H0, such as "10 %" or 0.1.
+        force: in place of either: what it lifts [N].
 
     Returns:
         A `Limits`: shortest and longest length and the largest push, in SI units; NaN where there is no stable state
@@ -102,7 +103,9 @@ def limits(muscle: Muscle, *, pressure: Any) -> Limits:
     refuse_friction(muscle, "limits")
     P, bench = _value("pressure", pressure), Bench.of(muscle)
     longest = bench.longest if np.isfinite(bench.longest) else np.nan
-    nothing = Limits(P, *(np.nan,) * 2, "", *(np.nan,) * 2, longest, *(np.nan,) * 2)
+    held = {"length": length, "contraction": contraction, "force": force}
+    burst = burst_pressures(muscle, **held) if any(value is not None for value in held.values()) else None
+    nothing = Limits(P, *(np.nan,) * 2, "", *(np.nan,) * 2, longest, *(np.nan,) * 2, burst)
     stable = shorten(bench, P, shapes=False)
     if stable.last is None:
         return attrs.evolve(nothing, shortest_cause=stable.cause.reason)
@@ -188,28 +191,6 @@ def least_pressure(muscle: Muscle, *, length: Any = None, contraction: Any = Non
     reason = bench.too_long() if h >= bench.longest else f"no pressure up to {highest} holds {show(h, 'm')}"
     warnings.warn(f"no least pressure: {reason}", MuscleWarning, stacklevel=2)
     return Pressure(found, reason)
-
-
-@one_thread()
-def holding(
-    bench: Bench, length: float, pressure: float, tolerance: float = 1e-10, shapes: bool = True, size: int = SIZE
-) -> float:
-    """Least pressure at or above `pressure` that holds a length; NaN if none up to some 10 GPa does."""
-    problem = bench.problem(size, bench.placement(Held.of(length=length, pressure=max(pressure, 1e4))))
-    low = Held.of(length=length, pressure=pressure)
-
-    def holds(held: Held) -> bool:
-        seen = look(find(problem, held), held)
-        folded = seen.verdict.shape in (Shape.ROLLED_UP, Shape.SELF_CONTACT)  # another branch
-        return seen.good if shapes else seen.stiffness > 0.0 and not folded
-
-    if holds(low):
-        return pressure
-    for k in range(TRIALS):
-        high = Held.of(length=length, pressure=pressure + FIRST * 4.0**k)
-        if holds(high):
-            return float(branch_end(problem, high, low, tolerance, shapes).held.get("pressure"))
-    return float("nan")
 
 
 def working_range(muscle: Muscle, *, pressures: Any) -> xr.Dataset:

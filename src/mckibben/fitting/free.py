@@ -169,7 +169,18 @@ def read_range(field: str, given: Any, declared: Declared) -> tuple[float, float
         low, high = ends
     except (TypeError, ValueError):
         raise SpecError(field, given, "must be a range", advice) from None
-    bounds = [float(declared.read(end, field, declared)) for end in (low, high)]
+
+    def read(end: Any) -> float:
+        """One number, also where the field holds several of them ("end_radii[0]")."""
+        if declared.kind == "quantities":
+            try:
+                (number,) = declared.read((end,), field, declared)
+            except SpecError as error:  # which names its place in a list of one
+                raise error.renamed(field) from error
+            return float(number)
+        return float(declared.read(end, field, declared))
+
+    bounds = [read(end) for end in (low, high)]
     if not bounds[0] < bounds[1]:
         raise SpecError(field, given, "must go from the smaller bound to the larger one")
     return bounds[0], bounds[1]

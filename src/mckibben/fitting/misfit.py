@@ -175,7 +175,7 @@ class Misfit:
         """Estimated relative error of the forces at x."""
         self(x)
         problem, near = self.problem_at(x), self.near
-        return 0.0 if near is None else float(errors(problem, near.u, near.loads).max())
+        return 0.0 if near is None else float(errors(problem, near.u, near.loads, ("length", "pressure")).max())
 
     def __call__(self, x: np.ndarray) -> Seen:
         """Forces and derivatives at x."""

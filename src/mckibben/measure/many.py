@@ -11,7 +11,8 @@ from mckibben.compiled.arrays import Array
 from mckibben.compiled.kernel import kernel
 from mckibben.compiled.rows import filled
 from mckibben.discretise.fields import Placed
-from mckibben.measure.read import read, stable
+from mckibben.measure.kink import Missed
+from mckibben.measure.read import read, stable, with_kinks
 from mckibben.solver.batch import moved, newton
 from mckibben.solver.problem import Basis
 from mckibben.solver.system import Unknowns, assemble, localise, residual
@@ -27,19 +28,21 @@ class Appraised(NamedTuple):
     length: Bool[Array, ""]  #: stable with the length held
     force: Bool[Array, ""]  #: stable with the force held
     antisymmetric: Bool[Array, ""]  #: stable against antisymmetric disturbances
+    missed: Missed | None  #: what kinks of a chamber with a gap add to the error
 
 
 def appraise(basis: Basis, on: Placed, state: Unknowns) -> Appraised:
     """A state, as it is."""
     local = localise(basis, on, state)
     s = assemble(basis, on, local, len(state.loads), together=True)
-    under, seen = stable(basis, on, local, s, jnp.array(False), together=True), read(basis, on, state)
+    under = stable(basis, on, local, s, jnp.array(False), together=True)
+    seen = with_kinks(read(basis, on, state), basis, on, state, s)
     numbers = seen.numbers | {
         "peak_fibre_tension": seen.fields["fibre_tension"].max(), "largest_radius": seen.fields["r"].max(),
         "residual": residual(s, state.loads), "conserved_variation": seen.conserved_variation,
         "coefficient_tail": seen.coefficient_tail,
     }  # fmt: skip
-    return Appraised(numbers, seen.largest_slope, *under)
+    return Appraised(numbers, seen.largest_slope, *under, seen.missed)
 
 
 @kernel

@@ -17,12 +17,13 @@ from mckibben.compiled.kernel import kernel
 from mckibben.compiled.rows import filled
 from mckibben.discretise.fields import Placed, place, points_at, variables
 from mckibben.discretise.fields import known as with_sines
+from mckibben.measure.kink import Missed, missed
 from mckibben.measure.peak import peak
 from mckibben.model.angle import cos, radians, slope
 from mckibben.model.energy import fittings_density, lagrangian
 from mckibben.model.fibres import axial_density, fibre_densities
 from mckibben.model.friction import crossing_density, crossing_moment
-from mckibben.model.gap import contact_of, inflated
+from mckibben.model.gap import contact_of, inflated, leaves
 from mckibben.model.kinematics import fibre_strains, height_rate, radius, volume_rate
 from mckibben.model.parameters import Number, Parameters
 from mckibben.model.point import Point
@@ -33,7 +34,19 @@ from mckibben.solver.problem import Basis
 from mckibben.solver.stability import stiffnesses
 from mckibben.solver.system import Local, System, Unknowns, assemble, localise, residual
 
-__all__ = ["ENERGIES", "NODES", "Reading", "Stable", "costates", "nodes", "read", "read_many", "stable", "states_at"]
+__all__ = [
+    "ENERGIES",
+    "NODES",
+    "Reading",
+    "Stable",
+    "costates",
+    "nodes",
+    "read",
+    "read_many",
+    "stable",
+    "states_at",
+    "with_kinks",
+]
 
 ENERGIES = ("bending_1", "bending_2", "twist", "chamber")
 """The parts of the stored energy, in the order in which they are kept."""
@@ -49,6 +62,7 @@ class Reading(NamedTuple):
     largest_slope: Float[Array, ""]  #: of the meridian, |psi| [rad]
     conserved_variation: Float[Array, ""]
     coefficient_tail: Float[Array, ""]
+    missed: Missed | None = None  #: what kinks of a chamber with a gap add to the error
 
 
 def nodes(basis: Basis) -> int:
@@ -99,6 +113,13 @@ def read(basis: Basis, on: Placed, state: Unknowns, kept: Any = None) -> Reading
         touching = jax.vmap(lambda at: contact_of(at, P, p)[0])(inner)
         numbers["contact"] = jnp.where(touching.all(), 1.0, weights @ touching / weights.sum())
     return Reading(numbers, found, jnp.abs(found["psi"]).max(), variation, basis.tail(state.u))
+
+
+def with_kinks(reading: Reading, basis: Basis, on: Placed, state: Unknowns, s: System) -> Reading:
+    """A reading with what kinks add to its error, where a chamber may leave the mesh."""
+    if not leaves(on.p):
+        return reading
+    return reading._replace(missed=missed(basis, on, state, s, basis.sampling(nodes(basis))))
 
 
 def states_at(basis: Basis, on: Placed, u: Array) -> Point:
@@ -243,7 +264,8 @@ def read_many(
     def one(state: Unknowns, kept: Any) -> tuple[Reading, Stable, Array]:
         local = localise(basis, on, state)
         s = assemble(basis, on, local, len(state.loads))
-        return read(basis, on, state, kept), stable(basis, on, local, s, volume), residual(s, state.loads)
+        seen = with_kinks(read(basis, on, state, kept), basis, on, state, s)
+        return seen, stable(basis, on, local, s, volume), residual(s, state.loads)
 
     def some(k: Array) -> Any:
         rows = jax.tree.map(lambda rows: jax.lax.dynamic_slice_in_dim(rows, k * size, size), (states, kept))

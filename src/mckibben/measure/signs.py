@@ -1,7 +1,7 @@
 """What the states of a result show that a real muscle would do otherwise: sentences, each from where it begins."""
 
 from functools import partial
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -14,7 +14,7 @@ from mckibben.model.span import bulging_pressure
 from mckibben.spec import Muscle
 from mckibben.units import show
 
-__all__ = ["Columns", "after", "strong"]
+__all__ = ["STRONG", "Columns", "after", "bearable", "stiffness", "strong"]
 
 STRONG = 1e7
 """Pressure [Pa] above what built muscles hold; hydraulic ones work up to some 50 bar."""
@@ -105,21 +105,48 @@ def apart(muscle: Muscle, steps: Columns, fields: Columns) -> list[str]:
     ]
 
 
-def bulging(muscle: Muscle, steps: Columns, fields: Columns) -> list[str]:
-    """A wall inside the braid that bulges through the openings between fibres by more than half a circle."""
-    chamber, braid, diameter = muscle.chamber, muscle.braid, muscle.braid.fibre.diameter
-    modulus = getattr(chamber and chamber.law, "shear_modulus", None)
-    if chamber is None or not chamber.inside or diameter is None or modulus is None:
-        return []
+class Spanned(NamedTuple):
+    """A wall over the openings between fibres (states, places)."""
+
+    width: np.ndarray  #: of the openings [m]
+    wall: np.ndarray  #: its thickness [m]
+    bears: np.ndarray  #: pressure at which it bulges by half a circle [Pa], infinite where it does not touch the mesh
+
+
+def stiffness(muscle: Muscle) -> float | None:
+    """Shear modulus [Pa] of a wall that fibres of known diameter carry; None where there is none such."""
+    chamber = muscle.chamber
+    if chamber is None or not chamber.inside or muscle.braid.fibre.diameter is None:
+        return None
+    modulus: float | None = getattr(chamber.law, "shear_modulus", None)
+    return modulus
+
+
+def bearable(muscle: Muscle, fields: Columns) -> Spanned | None:
+    """Of a wall inside the braid, which fibres carry; None where it is another or its stiffness is not known."""
+    chamber, braid, diameter, modulus = muscle.chamber, muscle.braid, muscle.braid.fibre.diameter, stiffness(muscle)
+    if chamber is None or diameter is None or modulus is None:
+        return None
     width = np.maximum(across(fields["r"], fields["theta"], braid.fibres) - diameter, 1e-9 * braid.radius)
     wall = chamber.wall_thickness * fields["stretch_thickness"]
-    bears = bulging_pressure(width, wall, modulus).min(axis=1)
-    hit = steps["pressure"] > bears
+    bears = bulging_pressure(width, wall, modulus)
+    if chamber.gap:
+        bears = np.where(fields["contact_pressure"] > 0.0, bears, np.inf)
+    return Spanned(width, wall, bears)
+
+
+def bulging(muscle: Muscle, steps: Columns, fields: Columns) -> list[str]:
+    """A wall inside the braid that bulges through the openings between fibres by more than half a circle."""
+    found = bearable(muscle, fields)
+    if found is None:
+        return []
+    width, wall, bears = found
+    hit = steps["pressure"] > bears.min(axis=1)
     if not hit.any():
         return []
     k = int(np.flatnonzero(hit)[0])
-    j = int(np.nanargmin(bulging_pressure(width[k], wall[k], modulus)))
-    numbers = ((wall[k, j], "m"), (width[k, j], "m"), (bears[k], "Pa"))
+    j = int(np.nanargmin(bears[k]))
+    numbers = ((wall[k, j], "m"), (width[k, j], "m"), (bears[k, j], "Pa"))
     there, through, least = (show(float(number), unit, 2) for number, unit in numbers)
     said = (
         f"the wall, {there} there, bulges by half a circle and more through the openings of {through} between fibres, "

@@ -111,11 +111,7 @@ def read_states(
     if kept is not None:
         asked.append(jax.tree.map(lambda rows: rows if n == 1 else padded(rows), memories.outer))
     reading, stable, left = read_many(*asked)
-    cut = Reading(
-        {name: np.asarray(values)[:n] for name, values in reading.numbers.items()},
-        {name: np.asarray(values)[:n] for name, values in reading.fields.items()},
-        *(np.asarray(values)[:n] for values in reading[2:]),
-    )
+    cut: Reading = jax.tree.map(lambda values: np.asarray(values)[:n], reading)
     return cut, Stable(*(np.asarray(part)[:n] for part in stable)), np.asarray(left)[:n]
 
 
@@ -147,21 +143,28 @@ def survey(
     variation, tail = reading.conserved_variation, reading.coefficient_tail
     near = nearly_straight(problem, reading.numbers["length"]) | (kept is not None)  # memory: nothing is conserved
     numbers = reading.numbers | {
-        "error_estimate": error_bound(variation, tail, near), "conserved_variation": variation,
+        "error_estimate": error_bound(variation, tail, near, _kinks(reading, held)), "conserved_variation": variation,
         "coefficient_tail": tail,
     }  # fmt: skip
     return Survey(problem, u, loads, numbers, reading.fields, residual, modes, verdicts)
 
 
-def errors(problem: Problem, u: np.ndarray, loads: np.ndarray) -> np.ndarray:
-    """Estimated relative error of force and length of states u (n, m) under loads (n, l)."""
+def _kinks(reading: Reading, held: tuple[Any, ...]) -> np.ndarray | float:
+    return 0.0 if reading.missed is None else np.asarray(reading.missed.under(held))
+
+
+def errors(problem: Problem, u: np.ndarray, loads: np.ndarray, held: tuple[Any, ...]) -> np.ndarray:
+    """Estimated relative error of force and length of states u (n, m) under loads (n, l), found with `held`."""
     reading = read_states(problem, u, loads, False)[0]
     near = nearly_straight(problem, reading.numbers["length"])
-    return error_bound(reading.conserved_variation, reading.coefficient_tail, near)
+    return error_bound(reading.conserved_variation, reading.coefficient_tail, near, _kinks(reading, held))
 
 
 def error_bound(
-    conserved_variation: np.ndarray, coefficient_tail: np.ndarray, stretched: np.ndarray | bool = False
+    conserved_variation: np.ndarray,
+    coefficient_tail: np.ndarray,
+    stretched: np.ndarray | bool = False,
+    kinks: np.ndarray | float = 0.0,
 ) -> np.ndarray:
     """The smaller of two bounds that hold on random muscles; of those `stretched` nearly to full extension only one.
 
@@ -169,11 +172,11 @@ def error_bound(
     coefficients enters the energy squared; near an instability the force follows less well, hence the power 1.5 (and
     `Line.tail` has more for series that end in small coefficients by chance). Near full extension the force answers to
     the last digits of the length, of which the conserved quantity knows nothing: there the tail counts, which fell
-    short by 1.8 at most.
+    short by 1.8 at most. Neither knows of `kinks` between the points, whose share comes on top.
     """
     by_tail = coefficient_tail**1.5
     usual = np.minimum(3.0 * conserved_variation, by_tail)
-    return np.maximum(np.where(stretched, 2.0 * by_tail, usual), ROUNDING)
+    return np.maximum(np.where(stretched, 2.0 * by_tail, usual), ROUNDING) + kinks
 
 
 def nearly_straight(problem: Problem, length: np.ndarray) -> np.ndarray:

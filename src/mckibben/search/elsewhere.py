@@ -50,7 +50,7 @@ def way_there(bench: Bench, held: Held, b: float, tolerance: float, roughly: boo
     end: BranchEnd | None = None
     for size, share in REFINED:
         end = branch_end(bench.problem(size, b), first, held, share, coarse=end)
-        if roughly or (size >= SEARCH and (end.last is None or estimated_error(end.last.state) <= tolerance)):
+        if roughly or (size >= SEARCH and (end.last is None or estimated_error(end.last.state, held) <= tolerance)):
             break
     assert end is not None
     return Way(first, end)

@@ -16,9 +16,9 @@ LOST = 48
 """Unknowns beyond which an inadmissible shape is not looked at again."""
 
 
-def estimated_error(state: Equilibrium) -> float:
-    """Estimated relative error of force and length."""
-    return float(errors(state.problem, state.u[None], state.loads[None])[0])
+def estimated_error(state: Equilibrium, held: Held) -> float:
+    """Estimated relative error of force and length, of a state with `held` held."""
+    return float(errors(state.problem, state.u[None], state.loads[None], held.names)[0])
 
 
 def sharpened(bench: Bench, state: Equilibrium, held: Held, tolerance: float, again: bool = False) -> Look:
@@ -34,7 +34,7 @@ def sharpened(bench: Bench, state: Equilibrium, held: Held, tolerance: float, ag
         if size <= basis.size:
             continue
         lost = seen.verdict.verdict in (Verdict.INADMISSIBLE, Verdict.NOT_CONVERGED)
-        if (lost and size > LOST) or (seen.state.converged and estimated_error(seen.state) <= tolerance):
+        if (lost and size > LOST) or (seen.state.converged and estimated_error(seen.state, held) <= tolerance):
             break
         problem = bench.problem(size, state.problem.b, modes=basis.modes)
         finer = refine(seen.state, problem, held) if seen.state.converged else find(problem, held)

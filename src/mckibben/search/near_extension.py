@@ -39,7 +39,7 @@ def stretched(bench: Bench, failed: Equilibrium, held: Held, tolerance: float) -
         if finer is None:
             break
         state = finer
-        if estimated_error(state) <= tolerance:
+        if estimated_error(state, held) <= tolerance:
             break
     return state
 
