@@ -15,6 +15,7 @@ from mckibben.spec.angle import AngleFrom, from_parallels
 from mckibben.spec.change import changed_muscle
 from mckibben.spec.declared import Declared, numbers
 from mckibben.spec.errors import nearest
+from mckibben.spec.fields import read_quantity
 from mckibben.spec.plausible import trusted
 from mckibben.spec.vary import full_name
 from mckibben.units import DISPLAY, UnitError, show, to_si
@@ -169,7 +170,8 @@ def _range(field: str, given: Any, declared: Declared) -> tuple[float, float]:
         low, high = ends
     except (TypeError, ValueError):
         raise SpecError(field, given, "must be a range", advice) from None
-    bounds = [float(declared.read(end, field, declared)) for end in (low, high)]
+    read = read_quantity if declared.kind == "quantities" else declared.read  # one of several
+    bounds = [float(read(end, field, declared)) for end in (low, high)]
     if not bounds[0] < bounds[1]:
         raise SpecError(field, given, "must go from the smaller bound to the larger one")
     return bounds[0], bounds[1]
