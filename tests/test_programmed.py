@@ -27,6 +27,7 @@ from mckibben.spec.change import changed_muscle
 from mckibben.spec.text import muscle_from_mapping, to_mapping
 from mckibben.spec.winding import fibre_length, turned
 from mckibben.sweeps.groups import grouped
+from mckibben.view.tube import Tube
 
 pytestmark = pytest.mark.model
 
@@ -243,6 +244,10 @@ def test_how_the_fibres_wind() -> None:
     xyz = np.stack([R0 * np.cos(phi), R0 * np.sin(phi), H0 * share], axis=1)
     way = float(np.linalg.norm(np.diff(xyz, axis=0), axis=1).sum())
     assert_allclose([fibre_length(muscle.braid), float(fibre_lengths(muscle))], way, rtol=1e-8)
+    tube = Tube.cylinder(muscle)  # what pictures draw
+    v, around = tube.fibre(0.3, -1)
+    assert_allclose(around, 0.3 - turned(muscle.braid, v / H0), atol=1e-5)
+    assert_allclose(tube.reached(tube.turned(v)), v, atol=1e-12)
     p = parameters(muscle)
     assert_allclose(float(p.H0 / jnp.sin(evened(p).theta0)), way, rtol=1e-8)
     places = np.array([0.2, 0.5, 0.9])
