@@ -104,7 +104,7 @@ def test_energy_of_a_step() -> None:
         assert_allclose(jax.grad(energy)(theta), friction.pull(at, p, memory), rtol=1e-10)
         after = friction.after_step(at, p, memory)
         assert_allclose(0.01 * (beta - float(after.alpha)), tau, rtol=1e-10)
-    assert_allclose(friction.crossings(p), 26493.648410122617, rtol=1e-13)
+    assert_allclose(friction.crossings(Point.cylinder(0.6), p), 26493.648410122617, rtol=1e-13)
 
 
 def test_isobaric_path_by_another_code() -> None:

@@ -199,7 +199,7 @@ def test_the_misprinted_equation_fails() -> None:
 def test_at_rest_the_fibres_are_natural_helices(drawn: Drawn) -> None:
     p = drawn.parameters()
     found = np.array(fibre_strains(Point(p.theta0, 0.0, 0.0), p)) * drawn.R0
-    natural = np.array(natural_strains(p)) * drawn.R0
+    natural = np.array(natural_strains(Point(p.theta0, 0.0, 0.0), p)) * drawn.R0
     np.testing.assert_allclose(found, natural, rtol=0.0, atol=3e-16)
     c, s = math.cos(drawn.theta0), math.sin(drawn.theta0)
     np.testing.assert_allclose(natural, [0.0, -c * c, c * s], rtol=0.0, atol=3e-16)  # Eq. (18)
@@ -207,4 +207,4 @@ def test_at_rest_the_fibres_are_natural_helices(drawn: Drawn) -> None:
 
 def test_straight_fibres_have_no_natural_strain() -> None:
     muscle = presets.reference().replace("braid.fibre.natural", "straight")
-    np.testing.assert_array_equal(natural_strains(parameters(muscle)), 0.0)
+    np.testing.assert_array_equal(natural_strains(Point.cylinder(0.6), parameters(muscle)), 0.0)

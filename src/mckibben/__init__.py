@@ -8,7 +8,8 @@ from mckibben.shown import drawn_by
 
 _PUBLIC = {
     "mckibben.spec": (
-        "ArrudaBoyce", "AxialLaw", "Bellows", "Braid", "Chamber", "CustomLaw", "Ends", "Fibre", "Fittings", "Friction",
+        "AngleProfile", "ArrudaBoyce", "AxialLaw", "Bellows", "Braid", "Chamber", "CustomLaw", "Ends", "Fibre",
+        "Fittings", "Friction",
         "Gent", "Joint", "MooneyRivlin", "Muscle", "NeoHookean", "Ogden", "Rubber", "Yeoh", "BlockedForce",
         "FreeContraction",
         "Isobaric", "Isometric", "Isotonic", "Protocol", "Step", "Stiffening",

@@ -9,6 +9,7 @@ from typing import Any
 from mckibben.spec import presets, walk
 from mckibben.spec.declared import Declared
 from mckibben.spec.rows import ASSUMED, HIDDEN
+from mckibben.spec.winding import extremes
 from mckibben.units import show, to_si
 
 __all__ = ["case_text", "numbered"]
@@ -54,7 +55,7 @@ def case_text(name: str) -> str:
     )
     for table, lines in tables.items():
         text += ["", f"[muscle.{table}]", *lines] if table else []
-    long = _TEST_STRETCH * math.sin(muscle.braid.angle) < 0.9  # well below the length of a fibre
+    long = _TEST_STRETCH * math.sin(extremes(muscle.braid)[1]) < 0.9  # well below the length of a fibre
     length = f"{1e3 * (_TEST_STRETCH if long else 1.0) * muscle.rest_length:.0f} mm"
     text += ["", "[test]", 'kind = "isometric"', f'length = "{length}"', 'pressure = "0 to 1 bar"', "points = 11", ""]
     return "\n".join(text)

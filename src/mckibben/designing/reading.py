@@ -175,6 +175,10 @@ def check_measure(measure: Measure, muscle: Muscle) -> None:
     if isinstance(measure, FibreSafety) and fibre.breaking_force is None:
         raise SpecError("braid.fibre.breaking_force", allowed="is missing, and a safety factor needs it",
                         advice='give it: mk.Fibre(..., breaking_force="30 N")')  # fmt: skip
+    if isinstance(measure, JammingMargin) and muscle.braid.angle_profile is not None:
+        said = f"does not go with the measure {measure.kind}, which knows one braid angle"
+        advice = "look at the cautions of a result, which tell where fibres touch"
+        raise SpecError("braid.angle_profile", allowed=said, advice=advice)
     weighs = isinstance(measure, Mass) or (isinstance(measure, Work) and measure.per == "mass")
     if (weighs or isinstance(measure, JammingMargin)) and fibre.diameter is None:
         raise SpecError("braid.fibre.diameter", allowed=f"is missing, and the measure {measure.kind} needs it")

@@ -21,7 +21,7 @@ from mckibben.model.point import Point
 __all__ = ["Spline"]
 
 
-def _point(x: Variables, p: Parameters) -> Point:
+def _point(x: Variables, p: Parameters, made: Any) -> Point:
     """psi and kappa from y = (theta', theta''): Eq. (12) and its derivative; NaN at |psi| = 90 deg and beyond."""
     theta, rate, bend = x
     slope = -p.R0 * tan(p.theta0)
@@ -30,7 +30,7 @@ def _point(x: Variables, p: Parameters) -> Point:
 
 
 FORM = Form(
-    integrals=(Integral(start=lambda p: radians(p.theta0), rate=lambda x, p: 0.0 * x[1], by=()),),
+    integrals=(Integral(start=lambda p, made: radians(p.theta0), rate=lambda x, p, made: 0.0 * x[1], by=()),),
     point=_point,
     orders=(1, 2),
     angles=(True, False, False),
@@ -111,7 +111,7 @@ class Spline:
         """Small changes of psi over those of the first field, theta' (Eq. 12)."""
         return -p.R0 * tan(p.theta0)
 
-    def tail(self, u: Array) -> Any:
+    def tail(self, u: Array, varied: bool = False) -> Any:
         """Largest of the last two coefficients over the largest (..., m)."""
         size = abs(u)
         return size[..., -2:].max(-1) / functions(u).maximum(size.max(-1), 1e-12)

@@ -22,7 +22,8 @@ from mckibben.compiled.arrays import Array
 from mckibben.model.angle import Known
 from mckibben.model.energy import scales
 from mckibben.model.parameters import Number, Parameters
-from mckibben.model.point import Point
+from mckibben.model.point import Made, Point
+from mckibben.model.profile import made_at
 
 __all__ = [
     "Floats",
@@ -36,6 +37,7 @@ __all__ = [
     "known",
     "place",
     "points_at",
+    "states",
     "variables",
 ]
 
@@ -48,10 +50,10 @@ Variables = tuple[Any, ...]
 class Integral(NamedTuple):
     """An integrated variable."""
 
-    start: Callable[[Parameters], Number]
-    """Its value at the first end, without unknowns."""
-    rate: Callable[[Variables, Parameters], Number]
-    """(x, p) -> its derivative by v."""
+    start: Callable[[Parameters, Any], Number]
+    """(p, made) -> its value as made, without unknowns: that at the first end, or at the points where that varies."""
+    rate: Callable[[Variables, Parameters, Any], Number]
+    """(x, p, made) -> its derivative by v, beyond that of its value as made."""
     by: tuple[int, ...]  #: which of x the rate depends on: fields, integrals before it; none if it is none
 
 
@@ -59,8 +61,8 @@ class Form(NamedTuple):
     """What the local variables of a discretisation mean."""
 
     integrals: tuple[Integral, ...]
-    point: Callable[[Variables, Parameters], Point]
-    """(x, p) -> the state of the energy."""
+    point: Callable[[Variables, Parameters, Any], Point]
+    """(x, p, made) -> the state of the energy; `made` is a `Made`, or None for a braid of one angle."""
     orders: tuple[int, ...]  #: how often each field of y is differentiated by v
     angles: tuple[bool, ...]  #: which of x enter by their sine and cosine alone
 
@@ -92,12 +94,23 @@ class Placed(NamedTuple):
     b: Number  #: how strongly points are crowded into the end layers
     unit: Float[Array, "4"]  #: of energy [J], length [m], volume [m^3] and closure [rad]
     jacobian: Float[Array, " q"]
+    made: Made | None = None  #: how the braid is made at the points; None where it has one angle
 
 
 def place(basis: Any, p: Parameters, b: Number) -> Placed:
     """A muscle on a discretisation, with points crowded by b."""
     with_angle = p._replace(theta0=Known.of(p.theta0))
-    return Placed(with_angle, b, scales(p), jnp.asarray(basis.jacobian(basis.operators().x, p, b)))
+    x = basis.operators().x
+    return Placed(with_angle, b, scales(p), jnp.asarray(basis.jacobian(x, p, b)), _made(basis, p, b, x))
+
+
+def _made(basis: Any, p: Parameters, b: Number, x: Floats) -> Made | None:
+    return None if p.profile is None else made_at(basis.coordinate(x, p, b) / p.H0, p)
+
+
+def states(basis: Any, on: Placed, u: Float[Array, " m"]) -> Point:
+    """The state at the quadrature points, angles `Known`."""
+    return basis.form.point(known(basis.form, variables(basis, on, u)), on.p, on.made)
 
 
 def variables(basis: Any, on: Placed, u: Float[Array, " m"]) -> Variables:
@@ -106,30 +119,31 @@ def variables(basis: Any, on: Placed, u: Float[Array, " m"]) -> Variables:
     fields = _fields(basis.form, operators, on.jacobian, u)
     found: Variables = ()
     for k, one in enumerate(basis.form.integrals):
-        value = one.start(on.p) + jnp.asarray(operators.lifts[k]) @ u
+        value = one.start(on.p, on.made) + jnp.asarray(operators.lifts[k]) @ u
         if one.by:
-            value = value + operators.cumulate @ (on.jacobian * _rate(basis.form, k, found, fields, on.p))
+            value = value + operators.cumulate @ (on.jacobian * _rate(basis.form, k, found, fields, on))
         found = (*found, value)
     return (*found, *fields)
 
 
-def _rate(form: Form, k: int, before: Variables, fields: Variables, p: Parameters) -> Number:
-    """Rate of integral k at points, from the integrals before it and the fields."""
+def _rate(form: Form, k: int, before: Variables, fields: Variables, on: Placed) -> Number:
+    """Rate of integral k at the quadrature points, from the integrals before it and the fields."""
     one, unknown = form.integrals[k], (None,) * (len(form.integrals) - len(before[:k]))
-    return one.rate(known(form, (*before[:k], *unknown, *fields)), p)
+    return one.rate(known(form, (*before[:k], *unknown, *fields)), on.p, on.made)
 
 
 def points_at(basis: Any, on: Placed, u: Float[Array, " m"], sampling: Sampling) -> Point:
     """The state at output points (n each), angles `Known`."""
     form, n = basis.form, len(basis.form.integrals)
     fields = _fields(form, sampling, jnp.asarray(basis.jacobian(sampling.x, on.p, on.b)), u)
+    made = _made(basis, on.p, on.b, sampling.x)
     inner, found = variables(basis, on, u), []
     for k, one in enumerate(form.integrals):
-        value = one.start(on.p) + jnp.asarray(sampling.lifts[k]) @ u
+        value = one.start(on.p, made) + jnp.asarray(sampling.lifts[k]) @ u
         if one.by:
-            value = value + sampling.sweep @ (on.jacobian * _rate(form, k, inner, inner[n:], on.p))
+            value = value + sampling.sweep @ (on.jacobian * _rate(form, k, inner, inner[n:], on))
         found.append(value)
-    return form.point(known(form, (*found, *fields)), on.p)
+    return form.point(known(form, (*found, *fields)), on.p, made)
 
 
 def _fields(form: Form, operators: Operators | Sampling, jacobian: Array, u: Array) -> Variables:

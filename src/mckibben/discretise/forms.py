@@ -2,19 +2,21 @@
 
 theta is integrated from theta' = rate(psi), Eq. (12). Where fibres stretch, that rate gains a field, the excess, and
 the logarithm q of their stretch is integrated from q' = excess tan(theta). As EA grows the excess tends to zero, so
-that the shapes of stiff fibres lie in a plane of unknowns, not along a curved valley: searches stay quick.
+that the shapes of stiff fibres lie in a plane of unknowns, not along a curved valley: searches stay quick. In a
+programmed braid theta goes along with theta0, and the excess with theta0' (theory page).
 """
 
 from functools import cache
 from itertools import chain
+from typing import Any
 
 import jax.numpy as jnp
 
 from mckibben.discretise.fields import Form, Integral, Variables
-from mckibben.model.angle import cos, sin, tan
+from mckibben.model.angle import cos, radians, sin, tan
 from mckibben.model.kinematics import angle_rate, end_angle, stretch_rate
 from mckibben.model.parameters import Number, Parameters
-from mckibben.model.point import Point
+from mckibben.model.point import Made, Point
 
 __all__ = ["line_form"]
 
@@ -32,26 +34,37 @@ def line_form(stretch: bool, roll: bool, give: bool, free: bool) -> Form:
     fields = ("psi", "kappa", *chain(*effects))
     names = (*integrated, *fields)
 
-    def point(x: Variables, p: Parameters) -> Point:
+    def point(x: Variables, p: Parameters, made: Made | None) -> Point:
         at = dict(zip(names, x, strict=True))
         stretched = _stretch(at["log_stretch"], None if free else at["turn"], p) if stretch else None
-        effects = (at.get(name) for name in ("excess", "roll", "roll_rate", "give"))
-        return Point(at["theta"], at["psi"], at["kappa"], stretched, *effects)
+        effects = {name: at.get(name) for name in ("roll", "roll_rate", "give")}
+        return Point(at["theta"], at["psi"], at["kappa"], stretched, _excess(at, made), **effects, made=made)
 
-    def turning(x: Variables, p: Parameters) -> Number:
+    def turning(x: Variables, p: Parameters, made: Made | None) -> Number:
         at = dict(zip(names, x, strict=True))
-        return angle_rate(Point(None, at["psi"], at["kappa"], excess=at.get("excess")), p)
+        return angle_rate(Point(None, at["psi"], at["kappa"], excess=at.get("excess"), made=made), p)
 
-    def stretching(x: Variables, p: Parameters) -> Number:
+    def stretching(x: Variables, p: Parameters, made: Made | None) -> Number:
         at = dict(zip(names, x, strict=True))
-        return stretch_rate(Point(at["theta"], None, None, excess=at["excess"]), p)
+        return stretch_rate(Point(at["theta"], None, None, excess=_excess(at, made), made=made), p)
 
     by = [names.index(name) for name in ("psi", "excess") if name in names]
-    integrals = [Integral(lambda p: end_angle(p, 0), turning, tuple(by))]
+    integrals = [Integral(_as_made, turning, tuple(by))]
     if stretch:
-        integrals.append(Integral(lambda p: 0.0 * p.R0, stretching, (0, names.index("excess"))))
+        integrals.append(Integral(lambda p, made: 0.0 * p.R0, stretching, (0, names.index("excess"))))
     orders, angles = tuple(ORDERS[name] for name in fields), tuple(name in ANGLES for name in names)
     return Form(tuple(integrals), point, orders, angles)
+
+
+def _as_made(p: Parameters, made: Made | None) -> Number:
+    """theta of the braid as made, or as the first fitting holds it: that of a programmed braid goes along with it."""
+    return end_angle(p, 0) if made is None else radians(made.angle)
+
+
+def _excess(at: dict[str, Any], made: Made | None) -> Number | None:
+    """The excess from its field: in a programmed braid that is what comes to theta0' of the braid as made, so that this
+    has the unknowns zero."""
+    return at.get("excess") if made is None else at["excess"] + made.rate
 
 
 def _stretch(log: Number, turn: Number | None, p: Parameters) -> Number:

@@ -13,6 +13,7 @@ from mckibben.model.cylinder import cylinder_force, cylinder_length, end_layer
 from mckibben.model.kinematics import radius
 from mckibben.model.parameters import Parameters
 from mckibben.model.point import Point
+from mckibben.model.profile import evened
 
 __all__ = ["crowding", "crowdings"]
 
@@ -25,6 +26,7 @@ STEEPEST = 8.0
 @partial(kernel, static_argnums=())
 def crowdings(p: Parameters, length: Array, force: Array, pressure: Array) -> Float[Array, " n"]:
     """b for each of n states of given length, or of given force where the length is NaN."""
+    p = evened(p)
     angles = jnp.linspace(jnp.deg2rad(3.0), jnp.deg2rad(88.0), 341)
 
     def one(length: Array, force: Array, pressure: Array) -> Array:

@@ -43,10 +43,11 @@ class Line:
     def of(cls, muscle: Muscle, size: int) -> "Line":
         """The space of shapes of a muscle: what its ends hold, and what its fibres may do.
 
-        Those of symmetric shapes, on half the length; where both ends have radii of their own of all shapes, with as
-        many modes for each half.
+        Those of symmetric shapes, on half the length; where both ends have radii of their own, or the braid angle
+        varies and is not mirrored, of all shapes, with as many modes for each half.
         """
-        roll, give, whole = muscle.braid.joint == Joint.PIN, muscle.gives_way, len(muscle.end_radii or ()) == 2
+        roll, give, profile = muscle.braid.joint == Joint.PIN, muscle.gives_way, muscle.braid.angle_profile
+        whole = len(muscle.end_radii or ()) == 2 or (profile is not None and not profile.mirrored)
         count, modes = (2 * size, "all") if whole else (size, "odd")
         return cls(count, str(muscle.ends), modes, muscle.braid.fibre.stretch, roll, give)  # type: ignore[arg-type]
 
@@ -133,13 +134,20 @@ class Line:
         """Small changes of psi over those of the first field: psi is the first field."""
         return 1.0
 
-    def tail(self, u: Array) -> Any:
+    def tail(self, u: Array, varied: bool = False) -> Any:
         """Largest of the last coefficients of a series over the largest of all (..., m): how well it has converged.
 
         Waves of the wall make a series that falls slowly and unevenly, whose last two may be small by chance: the error
         was then three squares of its last eighth x, which counts as the tail whose power 1.5 that is.
+
+        Where the braid is `varied` along its length, the excess follows what varies, and is not small. It enters by its
+        integral, so that each of its coefficients counts by its share of the degree.
         """
-        f, parts = functions(u), [abs(u[..., part]) for part in self.series.values()]
+        f, series = functions(u), {name: abs(u[..., part]) for name, part in self.series.items()}
+        if varied:
+            step = 1 if self.modes == "all" else 2
+            series["excess"] = series["excess"] / (1.0 + step * np.arange(series["excess"].shape[-1]))
+        parts = list(series.values())
         top = f.maximum(reduce(f.maximum, [part.max(-1) for part in parts]), 1e-12)
         two, eighth = (
             reduce(f.maximum, [part[..., -max(2, part.shape[-1] // share) :].max(-1) for part in parts]) / top

@@ -64,7 +64,7 @@ class DeadZone:
 def touch(basis: Basis, p: Parameters, b: Number, u: Float[Array, " m"], pressure: Number) -> Float[Array, " 2"]:
     """The largest and the least pressure [Pa] of the chamber on the mesh, below 0 where it would need more."""
     on = place(basis, p, b)
-    at = basis.form.point(variables(basis, on, u), on.p)
+    at = basis.form.point(variables(basis, on, u), on.p, on.made)
     found = jax.vmap(lambda at: pressed(at, pressure, on.p))(at)
     return jax.numpy.stack([found.max(), found.min()])
 

@@ -51,6 +51,7 @@ EFFECTS = (
     ),
     Effect("ends that hold the radius", "ends", "clamped", "free", 'ends = "clamped"'),
     Effect("fittings of another radius", "end_radii", None, None, "end_radii, as given"),
+    Effect("angle along the length", "braid.angle_profile", None, None, "braid.angle_profile, as given"),
 )  # fmt: skip
 """What can be switched. Compliance and friction are those of measured Festo muscles (theory page): put in your own."""
 
@@ -112,11 +113,14 @@ def effects(
 def _own(effects: Iterable[Effect], muscle: Muscle) -> list[Effect]:
     """The effects, with the muscle's own friction where it has one, and on its own dead length.
 
-    A gap is one of a chamber inside alone, and of another radius of the fittings none is known but the muscle's own.
+    A gap is one of a chamber inside alone, and of another radius of the fittings, or a programmed braid, none is known
+    but the muscle's own. Such a braid asks for fibres that stretch.
     """
     inside = muscle.chamber is not None and muscle.chamber.inside
     effects = [one for one in effects if one.field != "chamber.gap" or inside]
     effects = [one for one in effects if one.field != "end_radii" or muscle.end_radii is not None]
+    programmed = muscle.braid.angle_profile is not None
+    effects = [one for one in effects if one.field != ("braid.fibre.stretch" if programmed else "braid.angle_profile")]
     own: dict[str, dict[str, Any]] = {}
     if muscle.friction is not None:
         own["friction"] = {"on": muscle.friction, "switch": "friction, as given", "assumed": False}

@@ -8,7 +8,8 @@ from collections.abc import Iterator
 from mckibben.model.extension import longest
 from mckibben.model.jamming import across, jamming_lengths
 from mckibben.spec import Muscle, SpecError, Test
-from mckibben.spec.angle import MAGIC, both_ways, tendency
+from mckibben.spec.angle import MAGIC, between, both_ways, tendency
+from mckibben.spec.winding import extremes, fibre_length
 from mckibben.units import show
 
 __all__ = ["beyond", "derived", "refuse_friction", "turns"]
@@ -17,11 +18,12 @@ __all__ = ["beyond", "derived", "refuse_friction", "turns"]
 def derived(muscle: Muscle) -> Iterator[tuple[str, str, str]]:
     """(quantity, value, meaning) of what follows from the fields without solving anything."""
     braid, fibre = muscle.braid, muscle.braid.fibre
-    yield "braid", tendency(braid.angle), f"long muscles turn at {show(MAGIC, 'rad', 4)} from the parallels (Eq. 31)"
+    made = tendency(braid.angle) if braid.angle_profile is None else between(*extremes(braid))
+    yield "braid", made, f"long muscles turn at {show(MAGIC, 'rad', 4)} from the parallels (Eq. 31)"
     if longest(muscle) < math.inf:
         meaning = "longest possible length: the fibres are straight, the force has no bound"
         yield "full extension", show(longest(muscle), "m"), meaning
-    yield "fibre length", show(braid.length / math.sin(braid.angle), "m"), "from fitting to fitting, along one fibre"
+    yield "fibre length", show(fibre_length(braid), "m"), "from fitting to fitting, along one fibre"
     for name, value in zip(("B1", "B2", "B3"), fibre.stiffnesses, strict=True):
         way = {"B1": "bending in the tangent plane", "B2": "bending normal to the tube", "B3": "torsion"}[name]
         yield f"fibre stiffness {name}", show(value, "N m^2"), way
@@ -32,11 +34,13 @@ def derived(muscle: Muscle) -> Iterator[tuple[str, str, str]]:
     yield from _fittings(muscle)
     yield from _chamber(muscle)
     if fibre.diameter is not None:
-        room = across(braid.radius, braid.angle, braid.fibres)
+        room = across(braid.radius, extremes(braid)[0], braid.fibres)
         said = f"between neighbouring fibres as made: {room / fibre.diameter:.3g} diameters; the braid jams at 1"
         yield "jamming room", show(room, "m"), said
-        ends = [show(length, "m", 4) for length in jamming_lengths(muscle)]
-        yield "jammed", f"below {ends[0]}, beyond {ends[1]}", "length of the cylinder whose neighbouring fibres touch"
+        if braid.angle_profile is None:
+            ends = [show(length, "m", 4) for length in jamming_lengths(muscle)]
+            said = "length of the cylinder whose neighbouring fibres touch"
+            yield "jammed", f"below {ends[0]}, beyond {ends[1]}", said
 
 
 def _fittings(muscle: Muscle) -> Iterator[tuple[str, str, str]]:
@@ -70,6 +74,8 @@ def _chamber(muscle: Muscle) -> Iterator[tuple[str, str, str]]:
 def turns(muscle: Muscle) -> str:
     """What the braid angle makes of the muscle, in a line."""
     angle = muscle.braid.angle
+    if muscle.braid.angle_profile is not None:
+        return f"braid of {between(*extremes(muscle.braid))}"
     return f"braid of {both_ways(angle)}: {tendency(angle)}"
 
 

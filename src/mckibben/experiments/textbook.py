@@ -29,7 +29,7 @@ def textbook_force(muscle: Muscle, *, length: Any, pressure: Any) -> np.ndarray:
         fibres do not reach.
 
     Raises:
-        SpecError: for what is no number of the right kind.
+        SpecError: for what is no number of the right kind, and for a programmed braid.
 
     >>> muscle = mk.presets.paper()
     >>> curve = mk.run(muscle, mk.Isobaric(pressure="1 bar", length=["115 mm", "85 mm"]))
@@ -38,6 +38,9 @@ def textbook_force(muscle: Muscle, *, length: Any, pressure: Any) -> np.ndarray:
     >>> curve.force.round(2)  # by the model
     array([101.22,   6.66])
     """
+    if muscle.braid.angle_profile is not None:
+        said = "does not go with the textbook formulas, which know one braid angle"
+        raise SpecError("braid.angle_profile", allowed=said, advice="compare a braid of one of its angles")
     p = parameters(muscle)
     h, P = np.broadcast_arrays(_numbers("length", length, "m"), _numbers("pressure", pressure, "Pa"))
     reached = p.active(h) * np.sin(float(p.theta0)) < float(p.H0)

@@ -78,7 +78,7 @@ def forces_at(
 
     def lagrangian(free: Array, state: Unknowns) -> Array:
         on = placed(free)
-        at = basis.form.point(variables(basis, on, state.u), on.p)
+        at = basis.form.point(variables(basis, on, state.u), on.p, on.made)
         loads = state.loads
         at = jax.vmap(lambda at: inflated(at, loads[1] * on.unit[0] / on.unit[2], on.p))(at)
         densities = jax.vmap(lambda at: jnp.stack([stored(at, on.p), *works(at, on.p)]))(at)

@@ -1,6 +1,5 @@
 """`cautions()`: what a real muscle may do that is not in the model, told before solving or with the result."""
 
-import math
 from functools import partial
 from typing import Any, NamedTuple
 
@@ -15,9 +14,11 @@ from mckibben.model.gap import contact_of, inflated
 from mckibben.model.kinematics import height_rate, radius, volume_rate
 from mckibben.model.parameters import Number, Parameters, parameters
 from mckibben.model.point import Point
+from mckibben.model.profile import evened
 from mckibben.model.wall import chamber_pull, chamber_stretches, contact_pressure
 from mckibben.model.wrinkling import wrinkling
 from mckibben.spec import Muscle, SpecError, Step
+from mckibben.spec.winding import fibre_length
 from mckibben.units import show
 
 
@@ -40,7 +41,8 @@ THICK_WALL = 0.2
 
 
 def cautions(muscle: Muscle, *, length: Any, pressure: Any) -> tuple[str, ...]:
-    """Cautions about a target before anything is solved, by the uniform cylinder of that length that does not stretch.
+    """Cautions about a target before anything is solved, by the uniform cylinder of that length that does not stretch;
+    of a programmed braid by that of one angle whose fibres are as long.
 
     Thick wall, wrinkling, jammed fibres, a column that bows, fibre tension above the breaking force if one is given, a
     pressure above 100 bar, and of a chamber inside the braid a pressure too low for it to touch the braid, or so high
@@ -65,8 +67,8 @@ def cautions(muscle: Muscle, *, length: Any, pressure: Any) -> tuple[str, ...]:
     if step.points != 1 or any(getattr(step, name).needs_present for name in step.controls):
         raise SpecError("cautions", allowed="length and pressure must be one value each")
     h, P = (float(getattr(step, name).waypoints[0]) for name in ("length", "pressure"))
-    p = parameters(muscle)
-    longest = muscle.braid.length / math.sin(muscle.braid.angle)
+    p = evened(parameters(muscle))
+    longest = fibre_length(muscle.braid)
     if p.endless and float(p.active(h)) >= longest:  # no such cylinder: a result tells more
         return (*thick_wall(muscle), *strong({"length": np.array([h]), "pressure": np.array([P])}))
     cylinder = predicted(p, np.asarray(h), np.asarray(P))
@@ -113,7 +115,7 @@ def before(muscle: Muscle, length: float | None, pressure: float) -> list[str]:
     """Cautions that a result cannot tell: wall thickness, and wrinkling of the cylinder of the target length [m]."""
     notes = thick_wall(muscle)
     if length is not None:
-        found = predicted(parameters(muscle), np.asarray(length), np.asarray(pressure))
+        found = predicted(evened(parameters(muscle)), np.asarray(length), np.asarray(pressure))
         index, wave = float(found.index), float(found.wave)
         if index < -1.0:
             at = f"{show(length, 'm', 4)} and {show(pressure, 'Pa', 4)}"

@@ -15,7 +15,7 @@ import numpy as np
 from jaxtyping import Float
 
 from mckibben.compiled.arrays import Array
-from mckibben.discretise.fields import Placed, Sampling, known, points_at, variables
+from mckibben.discretise.fields import Placed, Sampling, points_at, states
 from mckibben.model.gap import borne
 from mckibben.model.kinematics import facing, stretches
 from mckibben.model.parameters import Number, Parameters
@@ -68,8 +68,7 @@ def missed(basis: Basis, on: Placed, state: Unknowns, s: System, outer: Sampling
     p, unit = on.p, on.unit
 
     def everywhere(u: Array, P: Array) -> tuple[Array, Array]:
-        at = basis.form.point(known(basis.form, variables(basis, on, u)), p)
-        return jax.vmap(lambda at: presses(at, P * unit[0] / unit[2], p))(at)
+        return jax.vmap(lambda at: presses(at, P * unit[0] / unit[2], p))(states(basis, on, u))
 
     P = state.loads[1]
     (q, k), along = jax.linearize(everywhere, state.u, P)

@@ -6,6 +6,7 @@ from typing import Any
 
 import numpy as np
 
+from mckibben.model.profile import fibre_lengths
 from mckibben.spec import Muscle
 from mckibben.units import Number
 
@@ -15,11 +16,11 @@ __all__ = ["mass_of", "over_fibres"]
 def mass_of(muscle: Muscle, fibre_density: Any, chamber_density: Any) -> Any:
     """Mass [kg] of fibres and chamber, without fittings, from densities [kg/m^3]; numbers of the muscle may be arrays.
 
-    A fibre is H0/sin(theta0) long. Its diameter must be known. NaN for bellows whose wall is not told.
+    A fibre of one angle is H0/sin(theta0) long. Its diameter must be known. NaN for bellows whose wall is not told.
     """
     braid, chamber = muscle.braid, muscle.chamber
     section = 0.25 * np.pi * np.asarray(braid.fibre.diameter) ** 2
-    mass = fibre_density * np.asarray(braid.fibres) * section * np.asarray(braid.length) / np.sin(braid.angle)
+    mass = fibre_density * np.asarray(braid.fibres) * section * fibre_lengths(muscle)
     if chamber is None or chamber_density is None:
         return mass
     if chamber.wall_thickness is None:

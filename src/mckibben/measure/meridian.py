@@ -5,7 +5,7 @@ import numpy as np
 
 from mckibben.compiled.arrays import Array
 from mckibben.compiled.kernel import kernel
-from mckibben.discretise.fields import known, place, points_at, variables
+from mckibben.discretise.fields import place, points_at, states
 from mckibben.model.angle import radians
 from mckibben.model.kinematics import height_rate, radius
 from mckibben.model.parameters import Number, Parameters
@@ -39,5 +39,5 @@ def meridians(basis: Basis, p: Parameters, b: Number, u: Array) -> tuple[Number,
     on = place(basis, p, b)
     sampling = basis.sampling(POINTS // 2 + 1 if basis.half else POINTS)
     at = points_at(basis, on, u, sampling)
-    rate = height_rate(basis.form.point(known(basis.form, variables(basis, on, u)), on.p), on.p)
+    rate = height_rate(states(basis, on, u), on.p)
     return radians(at.psi), radius(at, on.p), jnp.asarray(sampling.integral) @ (on.jacobian * rate)

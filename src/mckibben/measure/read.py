@@ -15,8 +15,7 @@ from jaxtyping import Bool, Float, Int
 from mckibben.compiled.arrays import Array
 from mckibben.compiled.kernel import kernel
 from mckibben.compiled.rows import filled
-from mckibben.discretise.fields import Placed, place, points_at, variables
-from mckibben.discretise.fields import known as with_sines
+from mckibben.discretise.fields import Placed, place, points_at, states
 from mckibben.measure.kink import Missed, missed
 from mckibben.measure.peak import peak
 from mckibben.model.angle import cos, radians, slope
@@ -100,7 +99,8 @@ def read(basis: Basis, on: Placed, state: Unknowns, kept: Any = None) -> Reading
     found["z"] = sampling.integral @ (on.jacobian * rate)
     checked = np.append(np.arange(q), q if basis.half else [q, -1])  # the mesh and the fittings
     at, along = jax.tree.map(lambda rows: rows[checked], (points, pulls))
-    variation = _variation(on, at, along, F, P, weights) if memory is None else jnp.asarray(jnp.nan)
+    conserves = memory is None and on.made is None  # neither what a path leaves nor what varies along the length does
+    variation = _variation(on, at, along, F, P, weights) if conserves else jnp.asarray(jnp.nan)
     extremes = jnp.stack([everywhere[name][:q] for name in ("fibre_tension", "r")])
     tallest = jax.vmap(lambda field: peak(field, basis.harmonics()))(extremes)
     numbers = {
@@ -112,7 +112,12 @@ def read(basis: Basis, on: Placed, state: Unknowns, kept: Any = None) -> Reading
     if inner.blown is not None:
         touching = jax.vmap(lambda at: contact_of(at, P, p)[0])(inner)
         numbers["contact"] = jnp.where(touching.all(), 1.0, weights @ touching / weights.sum())
-    return Reading(numbers, found, jnp.abs(found["psi"]).max(), variation, basis.tail(state.u))
+    return Reading(numbers, found, jnp.abs(found["psi"]).max(), variation, _tail(basis, on, state.u))
+
+
+def _tail(basis: Basis, on: Placed, u: Array) -> Array:
+    tail: Array = basis.tail(u) if on.made is None else basis.tail(u, varied=True)
+    return tail
 
 
 def with_kinks(reading: Reading, basis: Basis, on: Placed, state: Unknowns, s: System) -> Reading:
@@ -124,7 +129,7 @@ def with_kinks(reading: Reading, basis: Basis, on: Placed, state: Unknowns, s: S
 
 def states_at(basis: Basis, on: Placed, u: Array) -> Point:
     """The state at the quadrature points."""
-    return basis.form.point(with_sines(basis.form, variables(basis, on, u)), on.p)
+    return states(basis, on, u)
 
 
 def _densities(at: Point, p: Parameters, memory: Any = None) -> dict[str, Number]:

@@ -144,10 +144,11 @@ def _after(basis: Basis, on: Placed, begun: Unknowns, found: _Round) -> Stepped:
     mean = 0.5 * (begun.memory.moment + state.memory.moment)  # of second order in the step, and never negative
     slipped = mean * jnp.abs(next_inner.alpha - state.memory.alpha)
     weights = jnp.asarray(basis.operators().weights) * on.jacobian
+    slipped = slipped if inner.made is None else crossings(inner, p) * slipped
     good = found.good & (found.change <= SETTLED) & jnp.isfinite(state.u).all()
     return Stepped(
         state, found.outer, next_inner, next_outer, jnp.stack([weights @ one for one in rates[:2]]),
-        crossings(p) * (weights @ slipped),
+        weights @ slipped if inner.made is not None else crossings(inner, p) * (weights @ slipped),
         jnp.abs(turned(inner) - turned(states_at(basis, on, begun.u))).max(), found.iterations, good,
     )  # fmt: skip
 

@@ -10,6 +10,7 @@ from mckibben.compiled.kernel import kernel
 from mckibben.model.column import bending_stiffness, column_load
 from mckibben.model.jamming import across, jamming_lengths
 from mckibben.model.parameters import Parameters, parameters
+from mckibben.model.profile import at_share
 from mckibben.model.span import bulging_pressure
 from mckibben.spec import Muscle
 from mckibben.units import show
@@ -43,11 +44,13 @@ def jamming(muscle: Muscle, steps: Columns, fields: Columns) -> list[str]:
     hit = (apart < diameter).any(axis=1)
     if not hit.any():
         return []
-    flat, steep = jamming_lengths(muscle)
     k = int(np.flatnonzero(hit)[0])
     short = fields["theta"][k, int(np.nanargmin(apart[k]))] < 0.25 * np.pi
-    length, where = (flat, "flat around it, as below") if short else (steep, "steep along it, as beyond")
-    said = f"neighbouring fibres touch, {where} {show(length, 'm', 4)} anywhere: the braid jams, which the model"
+    where = "flat around it" if short else "steep along it"
+    if braid.angle_profile is None:
+        length = jamming_lengths(muscle)[0 if short else 1]
+        where += f", as {'below' if short else 'beyond'} {show(length, 'm', 4)} anywhere"
+    said = f"neighbouring fibres touch, {where}: the braid jams, which the model"
     return _first(hit, steps, f"{said} ignores; fewer or thinner fibres leave more room")
 
 
@@ -62,10 +65,10 @@ def column(muscle: Muscle, steps: Columns, fields: Columns) -> list[str]:
     middle = fields["r"].shape[1] // 2
     r, theta = fields["r"][:, middle], fields["theta"][:, middle]
     length = steps["length"] - float(muscle.rest_length - muscle.braid.length)
-    load = np.full(len(length), np.inf)
+    load, middle_of = np.full(len(length), np.inf), at_share(0.5, parameters(muscle))
     for i in np.flatnonzero((steps["force"] < 0.0) & (length > SLENDER * 2.0 * r)):
         held = (np.asarray(values[i]) for values in (theta, steps["force"], steps["pressure"]))
-        load[i] = column_load(length[i], float(_stiffness(parameters(muscle), *held)))
+        load[i] = column_load(length[i], float(_stiffness(middle_of, *held)))
     hit = -steps["force"] > NEAR * load
     if not hit.any():
         return []

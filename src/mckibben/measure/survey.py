@@ -141,7 +141,7 @@ def survey(
         shapes[k] = shape_of(*line)
     verdicts = [judge(mode, shape, "length" in held) for mode, shape in zip(modes, shapes, strict=True)]
     variation, tail = reading.conserved_variation, reading.coefficient_tail
-    near = nearly_straight(problem, reading.numbers["length"]) | (kept is not None)  # memory: nothing is conserved
+    near = by_tail_alone(problem, reading.numbers["length"]) | (kept is not None)  # memory: nothing is conserved
     numbers = reading.numbers | {
         "error_estimate": error_bound(variation, tail, near, _kinks(reading, held)), "conserved_variation": variation,
         "coefficient_tail": tail,
@@ -156,7 +156,7 @@ def _kinks(reading: Reading, held: tuple[Any, ...]) -> np.ndarray | float:
 def errors(problem: Problem, u: np.ndarray, loads: np.ndarray, held: tuple[Any, ...]) -> np.ndarray:
     """Estimated relative error of force and length of states u (n, m) under loads (n, l), found with `held`."""
     reading = read_states(problem, u, loads, False)[0]
-    near = nearly_straight(problem, reading.numbers["length"])
+    near = by_tail_alone(problem, reading.numbers["length"])
     return error_bound(reading.conserved_variation, reading.coefficient_tail, near, _kinks(reading, held))
 
 
@@ -177,6 +177,11 @@ def error_bound(
     by_tail = coefficient_tail**1.5
     usual = np.minimum(3.0 * conserved_variation, by_tail)
     return np.maximum(np.where(stretched, 2.0 * by_tail, usual), ROUNDING) + kinks
+
+
+def by_tail_alone(problem: Problem, length: np.ndarray) -> np.ndarray:
+    """Of which states of lengths [m] the conserved quantity tells nothing; in a programmed braid there is none."""
+    return nearly_straight(problem, length) | (problem.p.profile is not None)
 
 
 def nearly_straight(problem: Problem, length: np.ndarray) -> np.ndarray:

@@ -4,7 +4,7 @@ from mckibben.model.angle import sin
 from mckibben.model.axial import axial_energy, axial_tension
 from mckibben.model.kinematics import fibre_strains, natural_strains
 from mckibben.model.parameters import Number, Parameters
-from mckibben.model.point import Point
+from mckibben.model.point import Point, made_angle
 
 __all__ = ["axial_density", "axial_force", "fibre_densities"]
 
@@ -14,8 +14,8 @@ def fibre_densities(at: Point, p: Parameters) -> tuple[Number, Number, Number]:
 
     A fibre is 1/sin(theta0) long per unit v, which gives the factor N/(2 sin(theta0)).
     """
-    strains, natural = fibre_strains(at, p), natural_strains(p)
-    factor = p.N / (2.0 * sin(p.theta0))
+    strains, natural = fibre_strains(at, p), natural_strains(at, p)
+    factor = p.N / (2.0 * sin(made_angle(at, p)))
     d1, d2, d3 = (factor * B * (u - u0) ** 2 for B, u, u0 in zip((p.B1, p.B2, p.B3), strains, natural, strict=True))
     if p.stiffening is None:
         return d1, d2, d3
@@ -32,5 +32,5 @@ def axial_force(at: Point, p: Parameters) -> Number:
 def axial_density(at: Point, p: Parameters) -> Number:
     """Energy of the stretch of all N fibres per unit v [J/m]: N EA/(2 sin(theta0)) (lambda - 1)^2, or by their law."""
     if p.axial is not None:
-        return p.N / sin(p.theta0) * axial_energy(at.stretch - 1.0, p)
-    return p.N / (2.0 * sin(p.theta0)) * axial_force(at, p) * (at.stretch - 1.0)
+        return p.N / sin(made_angle(at, p)) * axial_energy(at.stretch - 1.0, p)
+    return p.N / (2.0 * sin(made_angle(at, p))) * axial_force(at, p) * (at.stretch - 1.0)

@@ -15,7 +15,7 @@ import jax.numpy as jnp
 from mckibben.model.angle import cos, radians, sin
 from mckibben.model.kinematics import fibre_strains
 from mckibben.model.parameters import Number, Parameters
-from mckibben.model.point import Point
+from mckibben.model.point import Point, made_angle
 
 __all__ = [
     "Crossing",
@@ -43,25 +43,26 @@ def as_made(p: Parameters) -> Crossing:
     return Crossing(0.0 * p.friction.moment, p.friction.moment)
 
 
-def spacing(p: Parameters) -> Number:
+def spacing(at: Point, p: Parameters) -> Number:
     """Distance l between crossings along a fibre [m]."""
-    return 2.0 * jnp.pi * p.R0 / (p.N * cos(p.theta0))
+    return 2.0 * jnp.pi * p.R0 / (p.N * cos(made_angle(at, p)))
 
 
-def crossings(p: Parameters) -> Number:
+def crossings(at: Point, p: Parameters) -> Number:
     """Crossings per unit v, n_c [1/m]."""
-    return p.N**2 * cos(p.theta0) / (4.0 * jnp.pi * p.R0 * sin(p.theta0))
+    made = made_angle(at, p)
+    return p.N**2 * cos(made) / (4.0 * jnp.pi * p.R0 * sin(made))
 
 
 def turn(at: Point, p: Parameters) -> Number:
     """Angle by which a crossing has turned since it was made, beta [rad]."""
-    return 2.0 * (radians(at.theta) - radians(p.theta0))
+    return 2.0 * (radians(at.theta) - radians(made_angle(at, p)))
 
 
 def slip_moment(at: Point, tension: Number, p: Parameters) -> Number:
     """Moment M at which a crossing slips [N m], at a tension T of the fibres [N]."""
     curvature = -fibre_strains(at._replace(roll=None, roll_rate=None), p)[1]  # of the surface, whatever the roll
-    pressed = spacing(p) * jnp.maximum(curvature, 0.0) + 2.0 * p.friction.diameter / spacing(p)
+    pressed = spacing(at, p) * jnp.maximum(curvature, 0.0) + 2.0 * p.friction.diameter / spacing(at, p)
     return p.friction.moment + p.friction.arm * pressed * jnp.maximum(tension, 0.0)
 
 
@@ -70,7 +71,7 @@ def incremental_density(at: Point, p: Parameters, memory: Crossing) -> Number:
     k, M = p.friction.stiffness, memory.moment
     x = turn(at, p) - memory.alpha
     size = jnp.abs(x)
-    return crossings(p) * jnp.where(k * size < M, 0.5 * k * x * x, M * size - 0.5 * M * M / k)
+    return crossings(at, p) * jnp.where(k * size < M, 0.5 * k * x * x, M * size - 0.5 * M * M / k)
 
 
 def crossing_moment(at: Point, p: Parameters, memory: Crossing) -> Number:
@@ -80,12 +81,12 @@ def crossing_moment(at: Point, p: Parameters, memory: Crossing) -> Number:
 
 def crossing_density(at: Point, p: Parameters, memory: Crossing) -> Number:
     """Energy that the crossings store per unit v [J/m]: it comes back when they are let go."""
-    return 0.5 * crossings(p) * crossing_moment(at, p, memory) ** 2 / p.friction.stiffness
+    return 0.5 * crossings(at, p) * crossing_moment(at, p, memory) ** 2 / p.friction.stiffness
 
 
 def pull(at: Point, p: Parameters, memory: Crossing) -> Number:
     """Derivative of the incremental energy by theta [J/m]."""
-    return 2.0 * crossings(p) * crossing_moment(at, p, memory)
+    return 2.0 * crossings(at, p) * crossing_moment(at, p, memory)
 
 
 def after_step(at: Point, p: Parameters, memory: Crossing) -> Crossing:

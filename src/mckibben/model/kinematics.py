@@ -4,7 +4,7 @@ import jax.numpy as jnp
 
 from mckibben.model.angle import cos, radians, sin, tan
 from mckibben.model.parameters import Number, Parameters
-from mckibben.model.point import Point
+from mckibben.model.point import Point, made_angle
 
 __all__ = [
     "angle_rate",
@@ -24,7 +24,7 @@ __all__ = [
 
 def radius(at: Point, p: Parameters) -> Number:
     """Current radius r [m] (Eq. 11), times the stretch of the fibres."""
-    return _stretched(p.R0 * cos(at.theta) / cos(p.theta0), at)
+    return _stretched(p.R0 * cos(at.theta) / cos(made_angle(at, p)), at)
 
 
 def _stretched(value: Number, at: Point) -> Number:
@@ -34,24 +34,25 @@ def _stretched(value: Number, at: Point) -> Number:
 
 def meridian_stretch(at: Point, p: Parameters) -> Number:
     """Meridian stretch s = |d(r, z)/dv| (square root of G in Eq. 5, by Eq. 10 corrected)."""
-    return _stretched(sin(at.theta) / sin(p.theta0), at)
+    return _stretched(sin(at.theta) / sin(made_angle(at, p)), at)
 
 
 def stretches(at: Point, p: Parameters) -> tuple[Number, Number, Number]:
     """Principal stretches of the incompressible chamber: hoop, axial, thickness (Eq. 24)."""
-    hoop, axial = _stretched(cos(at.theta) / cos(p.theta0), at), meridian_stretch(at, p)
+    hoop, axial = _stretched(cos(at.theta) / cos(made_angle(at, p)), at), meridian_stretch(at, p)
     return hoop, axial, 1.0 / (hoop * axial)
 
 
 def angle_rate(at: Point, p: Parameters) -> Number:
     """theta' = d theta/dv [rad/m] that keeps the fibres inextensible at slope psi (Eqs. 11-12), and its excess."""
-    rate = -sin(at.psi) / (p.R0 * tan(p.theta0))
+    rate = -sin(at.psi) / (p.R0 * tan(made_angle(at, p)))
     return rate if at.excess is None else rate + at.excess
 
 
 def stretch_rate(at: Point, p: Parameters) -> Number:
     """lambda'/lambda [1/m] of fibres that stretch: what r' = s sin(psi) asks for (theory page)."""
-    return at.excess * tan(at.theta)
+    rate = at.excess * tan(at.theta)
+    return rate if at.made is None else rate - at.made.rate * tan(at.made.angle)
 
 
 def closure_rate(at: Point, p: Parameters) -> Number:
@@ -102,10 +103,11 @@ def fibre_strains(at: Point, p: Parameters) -> tuple[Number, Number, Number]:
 
     Eq. (15) is misprinted in the paper: its first term divides by tan(theta), not tan(theta0).
     """
-    u1 = -2.0 * cos(p.theta0) * sin(at.psi) / p.R0
+    made = made_angle(at, p)
+    u1 = -2.0 * cos(made) * sin(at.psi) / p.R0
     if at.excess is not None:
-        u1 = u1 + sin(p.theta0) * at.excess
-    hoop, bend = cos(p.theta0) * cos(at.psi) / p.R0, sin(p.theta0) * at.kappa
+        u1 = u1 + sin(made) * at.excess
+    hoop, bend = cos(made) * cos(at.psi) / p.R0, sin(made) * at.kappa
     u2 = -hoop * cos(at.theta) + bend * sin(at.theta)
     u3 = hoop * sin(at.theta) + bend * cos(at.theta)
     return (u1, u2, u3) if at.roll is None else _rolled(u1, u2, u3, at, p)
@@ -114,10 +116,14 @@ def fibre_strains(at: Point, p: Parameters) -> tuple[Number, Number, Number]:
 def _rolled(u1: Number, u2: Number, u3: Number, at: Point, p: Parameters) -> tuple[Number, Number, Number]:
     """Strains about the axes of a section that has turned by phi about the fibre (theory page)."""
     c, s = cos(at.roll), sin(at.roll)
-    return c * u1 + s * u2, c * u2 - s * u1, u3 + sin(p.theta0) * at.roll_rate
+    return c * u1 + s * u2, c * u2 - s * u1, u3 + sin(made_angle(at, p)) * at.roll_rate
 
 
-def natural_strains(p: Parameters) -> tuple[Number, Number, Number]:
-    """Stress-free strains [1/m]: those of the initial helix (Eq. 18), or zero for naturally straight fibres."""
-    c, s = cos(p.theta0), sin(p.theta0)
-    return 0.0 * c, -p.helical * c * c / p.R0, p.helical * c * s / p.R0
+def natural_strains(at: Point, p: Parameters) -> tuple[Number, Number, Number]:
+    """Stress-free strains [1/m]: those of the initial helix (Eq. 18), or zero for naturally straight fibres.
+
+    In a programmed braid a fibre as made turns within the surface as well, by sin(theta0) theta0'.
+    """
+    c, s = cos(made_angle(at, p)), sin(made_angle(at, p))
+    aside = 0.0 * c if at.made is None else p.helical * s * at.made.rate
+    return aside, -p.helical * c * c / p.R0, p.helical * c * s / p.R0

@@ -71,6 +71,7 @@ class Parameters(NamedTuple):
 
     end_radii: Any = None  #: radii that the fittings hold [m], one for both or two; None where it is that of the braid
     axial: Any = None  #: `spec.AxialLaw` of fibres that stretch, None where T = EA (lambda - 1)
+    profile: Any = None  #: `spec.AngleProfile` of the braid, which begins at theta0; None where it has one angle
 
     @property
     def endless(self) -> bool:
@@ -117,6 +118,7 @@ def numbers(muscle: Muscle) -> Parameters:
         None if fittings is None else fittings.dead_length,
         muscle.end_radii,
         fibre.axial_law,
+        braid.angle_profile,
     )  # fmt: skip
 
 

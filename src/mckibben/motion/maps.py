@@ -10,6 +10,7 @@ from mckibben.motion.mapped import Mapped
 from mckibben.spec.errors import SpecError
 from mckibben.spec.muscle import Muscle
 from mckibben.spec.rig import Rig
+from mckibben.spec.winding import fibre_length
 from mckibben.units import show
 
 __all__ = ["maps_of"]
@@ -66,4 +67,4 @@ def _made(muscle: Muscle, top: float) -> Any:
 
 def _most(longest: float, muscle: Muscle) -> float:
     """Full extension [m]; of fibres that stretch, which have none, the length at which they would be straight."""
-    return longest if math.isfinite(longest) else float(muscle.braid.length) / math.sin(float(muscle.braid.angle))
+    return longest if math.isfinite(longest) else fibre_length(muscle.braid)

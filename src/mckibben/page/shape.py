@@ -41,7 +41,7 @@ def _told(tube: Tube, diameter: float, fibres: int, tension: Any, wall: Any) -> 
     return {
         "r": listed(r),
         "z": listed(z),
-        "turn": listed(even / (tube.R0 * np.tan(tube.theta0))),  # by how far a fibre has gone round [rad]
+        "turn": listed(tube.turned(even)),  # by how far a fibre has gone round [rad]
         "fibres": fibres,
         "drawn": fibres == tube.fibres,
         "diameter": number(diameter),

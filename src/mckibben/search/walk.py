@@ -8,6 +8,8 @@ import numpy as np
 from mckibben.measure.judge import Judgement, clearance, judge, shape_of
 from mckibben.measure.meridian import meridian
 from mckibben.model.extension import longest_of
+from mckibben.model.parameters import Parameters
+from mckibben.model.profile import fibre_length
 from mckibben.results.verdict import Modes, Shape, Verdict
 from mckibben.solver.equilibrium import Equilibrium
 from mckibben.solver.find import embedded, find
@@ -162,11 +164,16 @@ def branch_end(
     return _advance(walk, first, here, done, step, tolerance, target)
 
 
+def _fibre(p: Parameters) -> float:
+    """Length of a fibre as made [m]."""
+    return float(p.H0) / math.sin(float(p.theta0)) if p.profile is None else float(fibre_length(p))
+
+
 def _by_length(walk: _Walk, first: Equilibrium) -> _Walk:
     """The walk to a force as one to a length: stable under force control, a muscle is shorter the more it is pushed."""
     p, force = walk.problem.p, walk.target.get("force")
     dead, H0 = float(p.rest - p.H0), float(p.H0)
-    longest = min(longest_of(p, walk.problem.basis.ends), FAR * H0 / math.sin(float(p.theta0)) + dead)
+    longest = min(longest_of(p, walk.problem.basis.ends), FAR * _fibre(p) + dead)
     far = 0.1 * H0 + dead if force < first.force else first.length + (1.0 - 1e-6) * (longest - first.length)
     pressure = walk.target.get("pressure")
     lengths = [Held.of(length=length, pressure=pressure) for length in (first.length, far)]

@@ -19,6 +19,7 @@ from mckibben.spec import BlockedForce, FreeContraction, Isobaric, Muscle, Proto
 from mckibben.spec.catalogue import CATALOGUE
 from mckibben.spec.change import CHANGED
 from mckibben.spec.plausible import trusted
+from mckibben.spec.winding import fibre_length
 
 __all__ = ["Ends", "Fact", "Level", "curve", "ends", "known", "rated", "stable"]
 
@@ -140,7 +141,7 @@ def _span(muscle: Muscle, contractions: list[Fact]) -> tuple[float, float]:
     if far >= STROKE or far < -0.02:
         return 0.0, far
     braid, rest = muscle.braid, float(muscle.rest_length)
-    return -STRETCHED * (braid.length / math.sin(braid.angle) - braid.length) / rest, far
+    return -STRETCHED * (fibre_length(braid) - braid.length) / rest, far
 
 
 def rated(muscle: Muscle) -> str | None:

@@ -17,6 +17,7 @@ from mckibben.results.verdict import Verdict
 from mckibben.sheet.facts import Facts
 from mckibben.sheet.levels import stable
 from mckibben.spec import Muscle
+from mckibben.spec.winding import extremes, turned
 from mckibben.units import show
 from mckibben.view import style
 
@@ -104,14 +105,14 @@ def drawing(facts: Facts) -> Figure:
 def _muscle(axes: Axes, side: Outline, muscle: Muscle, middle: float, gap: float, lead: float) -> None:
     """Fittings, body and the fibres that face the viewer."""
     braid = muscle.braid
-    rate = 1.0 / (1e3 * float(braid.radius) * math.tan(float(braid.angle)))
+    winds = np.linspace(0.0, 1.0, 2049), turned(braid, np.linspace(0.0, 1.0, 2049))
     count = min(int(braid.fibres) // 2, STRANDS)
     for keep, shift in side.pieces(gap):
         z, r, v = side.z[keep] + shift, side.r[keep], side.v[keep]
         axes.fill_between(z, middle - r, middle + r, facecolor="0.93", edgecolor="0.2", linewidth=0.7, zorder=2)
         for hand in (1, -1):
             for k in range(count):
-                phi = 2.0 * math.pi * k / count + hand * v * rate
+                phi = 2.0 * math.pi * k / count + hand * np.interp(1e-3 * v / float(braid.length), *winds)
                 front = np.cos(phi) >= 0.0
                 axes.plot(z, np.where(front, middle + r * np.sin(phi), np.nan), color="0.35", linewidth=0.35, zorder=3)
     for end, sign, which in ((0.0, -1.0, 0), (side.shown(gap), 1.0, -1)):
@@ -152,7 +153,8 @@ def _dimensions(
     said = "to the fibres' centres" if muscle.braid.fibre.diameter is None else "over the fibres"
     outer = 1e3 * float(over_fibres(1e-3 * r, muscle))
     axes.text(right + 0.5 * lead, middle, f" ⌀ {_mm(outer)}\n {said}", ha="left", va="center", **text)
-    angle = f"\nbraid {math.degrees(float(muscle.braid.angle)):.3g}° from the circles" if made else ""
+    angles = dict.fromkeys(f"{math.degrees(angle):.3g}" for angle in extremes(muscle.braid))
+    angle = f"\nbraid {'–'.join(angles)}° from the circles" if made else ""
     axes.text(-2.0 * lead, middle, f"{word}{angle}", ha="right", va="center", fontsize=style.TICK)
 
 

@@ -89,6 +89,8 @@ def jumps(p: Parameters) -> np.ndarray:
     """Which of many muscles, whose numbers are arrays (n), have a chamber with a gap that would jump to the braid."""
     if not leaves(p) or isinstance(p.law, STEADY):
         return np.zeros(len(p.R0), bool)
+    if p.profile is not None:  # refused, one by one
+        return np.ones(len(p.R0), bool)
     return np.isfinite(np.asarray(jax.vmap(peak)(p)[0]))
 
 
@@ -96,6 +98,12 @@ def _refuse_jumps(p: Parameters) -> None:
     """SpecError for a chamber with a gap whose pressure has a maximum on the way to the braid: it would jump there."""
     if not leaves(p) or isinstance(p.law, STEADY):
         return
+    if p.profile is not None:
+        said = (
+            "does not go with braid.angle_profile and a law that may soften: whether the tube would jump to the braid "
+            "is known for braids of one angle"
+        )
+        raise SpecError("chamber.gap", "true", said, "leave gap out, or take a law that does not soften (NeoHookean)")
     pressure, radius = map(float, peaks(p))
     if pressure == pressure:
         bears, wide = show(pressure, "Pa", 3), show(2.0 * radius, "m", 3)

@@ -56,7 +56,7 @@ def balance(basis: Basis, p: Parameters, b: Number, u: Float[Array, " m"], press
     weights = jnp.asarray(basis.operators().weights) * on.jacobian
 
     def totals(u: Array) -> tuple[Array, tuple[Array, Array]]:
-        at = basis.form.point(variables(basis, on, u), on.p)
+        at = basis.form.point(variables(basis, on, u), on.p, on.made)
         if pressure is not None:
             at = jax.vmap(lambda at: inflated(at, pressure * on.unit[0] / on.unit[2], on.p))(at)
         densities = jax.vmap(lambda at: jnp.stack([stored(at, on.p), *works(at, on.p)]))(at)

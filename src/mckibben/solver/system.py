@@ -108,54 +108,54 @@ def localise(basis: Any, on: Placed, state: Unknowns, share: Number = 1.0) -> Lo
     def plain(near: Variables) -> Variables:
         return tuple(one.value if isinstance(one, Known) else one for one in near)
 
-    def density(values: Variables, near: Variables, memory: Any, hoop: Any) -> Number:
-        point = form.point(at(values, near), p)
+    def density(values: Variables, near: Variables, memory: Any, hoop: Any, made: Any) -> Number:
+        point = form.point(at(values, near), p, made)
         loads = zip(state.loads, works(point, p), unit[1:], strict=False)
         return share * stored(point, p, memory, P, hoop) / unit[0] - sum(
             load * work / size for load, work, size in loads
         )
 
-    def slopes(near: Variables, memory: Any, hoop: Any) -> tuple[Any, Any, Any]:
+    def slopes(near: Variables, memory: Any, hoop: Any, made: Any) -> tuple[Any, Any, Any]:
         values = plain(near)
-        derived = jax.value_and_grad(lambda *v: density(v, near, memory, hoop), tuple(range(count)))
+        derived = jax.value_and_grad(lambda *v: density(v, near, memory, hoop, made), tuple(range(count)))
         (value, first), change = jax.linearize(derived, *values)
         return value, tuple(first), upper(by_each(lambda *by: change(*by)[1], values))
 
-    def working(near: Variables, hoop: Any) -> tuple[tuple[Array, ...], tuple[tuple[Array, ...], ...]]:
+    def working(near: Variables, hoop: Any, made: Any) -> tuple[tuple[Array, ...], tuple[tuple[Array, ...], ...]]:
         """What loads do work on, and its derivatives by each local variable."""
 
         def densities(*values: Number) -> tuple[Number, ...]:
-            point = inflated(form.point(at(values, near), p), P, p, hoop)
+            point = inflated(form.point(at(values, near), p, made), P, p, hoop)
             return tuple(work / size for work, size in zip(works(point, p), sizes, strict=True))
 
         values, sizes = plain(near), tuple(unit[1:])
         found, change = jax.linearize(densities, *values)
         return found, by_each(change, values)
 
-    def swelling(near: Variables, hoop: Any) -> Array:
+    def swelling(near: Variables, hoop: Any, made: Any) -> Array:
         """By how much the volume of a chamber grows with the pressure while the mesh stays."""
-        point = form.point(near, p)
+        point = form.point(near, p, made)
         grown: Array = jax.grad(lambda P: works(inflated(point, P, p, hoop), p)[1])(P)
         return grown * unit[0] / unit[2] ** 2
 
-    def turning(near: Variables, one: Integral) -> tuple[tuple[Array, ...], tuple[tuple[Array, ...], ...]]:
+    def turning(near: Variables, made: Any, one: Integral) -> tuple[tuple[Array, ...], tuple[tuple[Array, ...], ...]]:
         values = plain(near)
 
         def rate(*some: Number) -> Number:
             every = list(values)
             for k, value in zip(one.by, some, strict=True):
                 every[k] = value
-            return one.rate(at(tuple(every), near), p)
+            return one.rate(at(tuple(every), near), p, made)
 
         some = tuple(values[k] for k in one.by)
         first, change = jax.linearize(jax.grad(rate, tuple(range(len(some)))), *some)
         return tuple(first), upper(by_each(change, some))
 
-    near = known(form, x)
-    hoops = jax.vmap(lambda near: found_hoop(form.point(near, p), P, p))(near) if leaves(p) else None
-    value, first, second = jax.vmap(slopes)(near, state.memory, hoops)
-    done, done_first = jax.vmap(working)(near, hoops)
-    turned = [jax.vmap(partial(turning, one=one))(near) if one.by else ((), ()) for one in form.integrals]
+    near, made = known(form, x), on.made
+    hoops = jax.vmap(lambda near, made: found_hoop(form.point(near, p, made), P, p))(near, made) if leaves(p) else None
+    value, first, second = jax.vmap(slopes)(near, state.memory, hoops, made)
+    done, done_first = jax.vmap(working)(near, hoops, made)
+    turned = [jax.vmap(partial(turning, one=one))(near, made) if one.by else ((), ()) for one in form.integrals]
     return Local(
         weight * value,
         tuple(weight * f for f in first),
@@ -164,7 +164,7 @@ def localise(basis: Any, on: Placed, state: Unknowns, share: Number = 1.0) -> Lo
         tuple(tuple(weight * f for f in row) for row in done_first),
         tuple(tuple(on.jacobian * f for f in turns) for turns, _ in turned),
         tuple(tuple(tuple(on.jacobian * f for f in row) for row in bends) for _, bends in turned),
-        weight * jax.vmap(swelling)(near, hoops) if leaves(p) else None,
+        weight * jax.vmap(swelling)(near, hoops, made) if leaves(p) else None,
     )
 
 
@@ -260,7 +260,8 @@ def remembered(basis: Any, on: Placed, state: Unknowns) -> Unknowns:
     """A state that has been reached, with what its points keep of it for the next one."""
     if state.memory is None:
         return state
-    at = basis.form.point(variables(basis, on, state.u), on.p)  # what crossings keep knows nothing of the chamber
+    x = variables(basis, on, state.u)
+    at = basis.form.point(x, on.p, on.made)  # what crossings keep knows nothing of the chamber
     return state._replace(memory=jax.vmap(lambda at, kept: remember(at, on.p, kept))(at, state.memory))
 
 

@@ -1,6 +1,7 @@
 """The specification: the muscle and the test that a user describes, immutable and checked, in SI numbers."""
 
 from mckibben.spec.air import Isothermal, Polytropic, Supply, Valve, WallHeat
+from mckibben.spec.angle_profile import AngleProfile
 from mckibben.spec.axial import AxialLaw
 from mckibben.spec.chamber import Chamber, Side, Wall
 from mckibben.spec.controls import PID, Controller
@@ -64,6 +65,7 @@ __all__ = [
     "TESTS",
     "AirVolume",
     "Along",
+    "AngleProfile",
     "ArrudaBoyce",
     "AxialLaw",
     "Bellows",

@@ -13,7 +13,7 @@ from typing import Any
 
 from mckibben.units import Number, is_traced, show
 
-__all__ = ["MAGIC", "AngleFrom", "anew", "as_written", "both_ways", "from_parallels", "tendency"]
+__all__ = ["MAGIC", "AngleFrom", "anew", "as_written", "between", "both_ways", "from_parallels", "tendency"]
 
 MAGIC = math.atan(math.sqrt(0.5))
 """The magic angle from the parallels [rad], 35.26 deg: there a long muscle neither contracts nor lengthens (Eq. 31)."""
@@ -59,6 +59,11 @@ def anew(braid: Any, given: Mapping[str, Any]) -> dict[str, Any]:
 def both_ways(angle: float) -> str:
     """An angle [rad] from the parallels in both conventions: "65 deg from the parallels (25 deg from the axis)"."""
     return f"{show(angle, 'rad')} from the parallels ({show(math.pi / 2.0 - angle, 'rad')} from the axis)"
+
+
+def between(low: float, high: float) -> str:
+    """Which angles [rad] from the parallels a programmed braid has: "37 deg to 48 deg from the parallels"."""
+    return f"{show(low, 'rad', 4)} to {show(high, 'rad', 4)} from the parallels, programmed along the length"
 
 
 def tendency(angle: float) -> str:

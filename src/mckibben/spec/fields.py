@@ -107,10 +107,13 @@ def quantities(
     *,
     meaning: str,
     low: float = -math.inf,
+    high: float = math.inf,
     low_open: bool = False,
+    high_open: bool = False,
     size: tuple[float, float] = (0.0, math.inf),
     display: str = "",
     source: str = "",
+    advice: str = "",
     default: Any = attrs.NOTHING,
     doubt: Doubt | None = None,
     read: Callable[[Any, str, Declared], tuple[Number, ...]] = _read_quantities,
@@ -118,8 +121,9 @@ def quantities(
     """A list of one or more numbers with the same unit, stored as a tuple; with `default=None` it may be left out."""
     return declare(
         Declared(
-            kind="quantities", read=read, unit=unit, meaning=meaning, low=low, low_open=low_open, size=size,
-            display=display, source=source, default=default, doubt=doubt, quiet=default is None,
+            kind="quantities", read=read, unit=unit, meaning=meaning, low=low, high=high, low_open=low_open,
+            high_open=high_open, size=size, display=display, source=source, advice=advice,
+            default=default, doubt=doubt, quiet=default is None,
         )
     )  # fmt: skip
 

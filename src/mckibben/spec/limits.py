@@ -111,9 +111,9 @@ def _check_ratio(field: str, value: Number, other: Number, name: str, limits: tu
         raise SpecError(field, show(value, "m"), said, "check the units of both")
 
 
-def check_angle(angle: Number) -> None:
+def check_angle(angle: Number, field: str = "braid.angle") -> None:
     """SpecError for fibres that lie along the parallels or the axis, but for a hair."""
     if not is_traced(angle) and min(math.sin(angle), math.cos(angle)) < FLATTEST:
         least = math.degrees(FLATTEST)
         said = f"is beyond what can be computed: {least:.4f} deg to {90.0 - least:.4f} deg"
-        raise SpecError("braid.angle", show(angle, "rad"), said, "fibres cannot lie along the parallels or the axis")
+        raise SpecError(field, show(angle, "rad"), said, "fibres cannot lie along the parallels or the axis")

@@ -8,7 +8,8 @@ from typing import Any
 
 import attrs
 
-from mckibben.spec.angle import AngleFrom, both_ways, from_parallels, tendency
+from mckibben.spec.angle import AngleFrom, between, both_ways, from_parallels, tendency
+from mckibben.spec.angle_profile import AngleProfile, check_angles, check_profile
 from mckibben.spec.chamber import Chamber
 from mckibben.spec.change import changed_muscle
 from mckibben.spec.declared import Reads, walk
@@ -20,6 +21,7 @@ from mckibben.spec.fields import choice, count, part, quantities, quantity, spec
 from mckibben.spec.fittings import Fittings
 from mckibben.spec.friction import Friction, check_friction
 from mckibben.spec.limits import check_angle, check_muscle
+from mckibben.spec.winding import extremes
 from mckibben.units import Number, is_traced, show
 
 __all__ = ["Braid", "Joint", "Muscle"]
@@ -51,17 +53,19 @@ class Braid:
         radius: radius R0 of the fibres' centre lines [m].
         length: length H0 between the fittings [m]; what lies dead under them is not part of it (`Fittings`).
         angle: braid angle theta0 [rad], above 0 and below 90 deg, between a fibre and the parallels (the circles around
-            the tube). Above 35.26 deg a long muscle contracts under pressure, below it extends (Eq. 31).
+            the tube). Above 35.26 deg a long muscle contracts under pressure, below it extends (Eq. 31). With an
+            `angle_profile` it is that at the first end.
         fibres: number N of fibres, both hands together: even.
         fibre: what one fibre is, a `Fibre`.
         joint: what holds fibres together where they cross, a `Joint`: "hinge" (the paper's) or "pin".
         angle_from: "axis" if the angle given is measured from the tube's axis, as in many other papers. It is
             converted: the `angle` of the braid is always from the parallels. What it was given from is remembered
             (`measured_from`): an angle given anew, by `Muscle.replace` or a sweep, means the same.
+        angle_profile: `AngleProfile` of a braid whose angle varies along its length, or None for one angle.
 
     Raises:
         SpecError: for a value out of range, an odd number of fibres, or fibres so thick that they do not fit side by
-            side, N/2 d > 2 pi R0 sin(theta0).
+            side, N/2 d > 2 pi R0 sin(theta0), or a profile beside an angle from the axis.
 
     >>> fibre = mk.Fibre(diameter="0.25 mm", E="3 GPa", nu=0.4)
     >>> braid = mk.Braid(radius="12.5 mm", length="85 mm", angle="53 deg", angle_from="axis", fibres=56, fibre=fibre)
@@ -94,6 +98,10 @@ class Braid:
     angle_from: Reads[AngleFrom] = choice(
         AngleFrom, meaning="what the given angle is measured from", default=AngleFrom.PARALLELS, stored=False
     )
+    angle_profile: AngleProfile | None = part(
+        AngleProfile, meaning="how the braid angle goes on from the first end, none for one angle", default=None,
+        quiet=True,
+    )  # fmt: skip
     measured_from: Any = attrs.field(default=None, eq=False)
     """What the angle was given from, an `AngleFrom`: the words of whoever made the braid, beside its numbers."""
 
@@ -103,21 +111,34 @@ class Braid:
         object.__setattr__(self, "angle", from_parallels(self.angle, self.angle_from))
         object.__setattr__(self, "angle_from", AngleFrom.PARALLELS)
         check_angle(self.angle)
+        if self.angle_profile is not None and self.measured_from == AngleFrom.AXIS:
+            said = "is from the parallels, and does not go with an angle that is given from the axis"
+            raise SpecError("braid.angle_profile", allowed=said, advice="give all angles from the parallels")
         if not is_traced(self.fibres) and self.fibres % 2:
             raise SpecError("braid.fibres", self.fibres, "must be even", "half of the fibres wind each way")
+        check_angles(self)
         self._check_room()
 
     def __remark__(self) -> str:
         """What the angle means, both ways, for those who measure it the other way."""
-        known = isinstance(self.angle, float) and 0.0 < self.angle < math.pi / 2.0
-        return f"{both_ways(self.angle)}: {tendency(self.angle)}" if known else ""
+        if not all(isinstance(angle, float) and 0.0 < angle < math.pi / 2.0 for angle in self.angles):
+            return ""
+        if self.angle_profile is not None:
+            return between(*extremes(self))
+        return f"{both_ways(self.angle)}: {tendency(self.angle)}"
+
+    @property
+    def angles(self) -> tuple[Number, ...]:
+        """The braid angles that are given [rad]: at the first end, and those of a profile."""
+        return (self.angle,) if self.angle_profile is None else (self.angle, *self.angle_profile.angle)
 
     def _check_room(self) -> None:
         """Raise unless neighbours of one hand, 2 pi R0 sin(theta0)/(N/2) apart, are at least a diameter apart."""
         diameter = self.fibre.diameter
-        if diameter is None or any(is_traced(x) for x in (diameter, self.radius, self.angle, self.fibres)):
+        if diameter is None or any(is_traced(x) for x in (diameter, self.radius, self.fibres, *self.angles)):
             return
-        room = 2.0 * math.pi * self.radius * math.sin(self.angle)
+        least = self.angle if self.angle_profile is None else extremes(self)[0]
+        room = 2.0 * math.pi * self.radius * math.sin(least)
         if self.fibres // 2 * diameter <= room:
             return
         pairs = math.floor(room / diameter)
@@ -196,6 +217,7 @@ class Muscle:
         check_friction(self.friction, self.braid.fibre.diameter)
         check_muscle(self)
         check_end_radii(self)
+        check_profile(self)
 
     def __remark__(self) -> str:
         """What the braid angle means."""

@@ -112,6 +112,7 @@ def _arranged(paths: Paths, found: Appraised, some: np.ndarray, good: np.ndarray
     seen = {name: by_design(values) for name, values in found.numbers.items()}
     group = paths.group.take(where)
     stretched = seen["length"] > STRETCHED * surely_reached(group.p, group.line.ends)[:, None]
+    stretched = stretched | (group.p.profile is not None)  # nothing is conserved along such a braid
     kinks = 0.0 if found.missed is None else by_design(found.missed.under(group.held))
     seen["error_estimate"] = error_bound(seen["conserved_variation"], seen["coefficient_tail"], stretched, kinks)
     loads, slope, sideways = (by_design(rows) for rows in (found.force, found.largest_slope, found.antisymmetric))

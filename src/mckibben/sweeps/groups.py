@@ -15,6 +15,7 @@ import numpy as np
 
 from mckibben.discretise.spectral import Line
 from mckibben.model.parameters import Parameters, numbers
+from mckibben.model.profile import extremes
 from mckibben.solver.bench import jumps
 from mckibben.spec import (
     Along,
@@ -32,8 +33,9 @@ from mckibben.spec import (
 )
 from mckibben.spec import numbers as leaves_of
 from mckibben.spec.angle import from_parallels
+from mckibben.spec.angle_profile import certainly_rises
 from mckibben.spec.end_radii import certainly_held
-from mckibben.spec.limits import certainly_fits
+from mckibben.spec.limits import FLATTEST, certainly_fits
 from mckibben.spec.vary import changed
 from mckibben.sweeps.plan import Piece
 
@@ -142,6 +144,12 @@ def grouped(muscle: Muscle, test: Test, values: dict[str, np.ndarray], index: np
     valid = np.broadcast_to(_valid(several), (count,))
     p: Parameters = jax.tree.map(lambda x: np.array(np.broadcast_to(np.asarray(x, float), (count,))), numbers(several))
     valid = valid & ~jumps(p)
+    if p.profile is not None:
+        low, high = extremes(p)
+        room = 2.0 * np.pi * p.R0 * np.sin(low)
+        diameter = several.braid.fibre.diameter
+        valid = valid & (np.minimum(np.sin(low), np.cos(high)) > FLATTEST) & (low > 0.0) & (high < 0.5 * np.pi)
+        valid = valid & (diameter is None or 0.5 * p.N * diameter <= FITS * room)
     present = {"length": p.rest, "force": np.zeros(count), "pressure": np.zeros(count)}
     rows, corners = [], []
     for k, step in enumerate(steps):
@@ -186,6 +194,8 @@ def _valid(muscle: Muscle) -> Any:
     if diameter is not None:
         room = 2.0 * np.pi * braid.radius * np.sin(braid.angle)
         good = good & (0.5 * np.asarray(braid.fibres) * diameter <= FITS * room)
+    if braid.angle_profile is not None:
+        good = good & certainly_rises(braid.angle_profile)
     if muscle.end_radii is not None:
         good = good & certainly_held(braid, muscle.end_radii)
     if muscle.chamber is not None:

@@ -15,6 +15,7 @@ import numpy as np
 
 from mckibben.results.result import Result
 from mckibben.spec import Muscle
+from mckibben.spec.winding import extremes
 from mckibben.view.mesh import Mesh, cut_face, disc, pipe, surface
 from mckibben.view.tube import Floats, Tube
 
@@ -60,7 +61,7 @@ class Body:
 
     def centre_line(self, start: float, hand: int, v: Floats, weave: bool = True) -> tuple[Floats, Floats]:
         """Points (n, 3) [m] and normals of the surface along the fibre of a hand (1 or -1) that starts at an angle."""
-        phi = start + hand * v / self._turn
+        phi = start + hand * self.tube.turned(v)
         normal = self.tube.normal(v, phi)
         points = self.tube.point(v, phi)
         return (points + hand * self._over(v)[:, None] * normal if weave else points), normal
@@ -68,7 +69,7 @@ class Body:
     def fibre_pipes(self) -> Mesh:
         """All fibres as round bars."""
         per_hand, (points, sides) = self.fibres // 2, self._fineness()
-        every = self.crossings()[1] / points
+        every = np.diff(self.crossings()).min() / points
         v = np.append(np.arange(0.0, self.tube.v[-1] * (1.0 - 1e-9), every), self.tube.v[-1])
         return Mesh.joined([
             pipe(*self.centre_line(start, hand, piece), self.diameter / 2.0, piece, sides)
@@ -79,6 +80,10 @@ class Body:
 
     def crossings(self) -> Floats:
         """Material coordinates [m] at which fibres cross, from one end on."""
+        if self.tube.turns is not None:
+            apart = np.pi / (self.fibres // 2)
+            last = max(float(self.tube.turned(self.tube.v[-1])), 1.5 * apart)
+            return self.tube.reached(np.arange(0.0, last, apart))
         every = np.pi * self._turn / (self.fibres // 2)
         return np.arange(0.0, max(self.tube.v[-1], 1.5 * every), every)
 
@@ -111,12 +116,12 @@ class Body:
 
     @property
     def _turn(self) -> float:
-        """dv/dphi of a fibre [m] (Eq. 7)."""
+        """dv/dphi of a fibre [m] (Eq. 7); of a programmed braid at its first end."""
         return self.tube.R0 * math.tan(self.tube.theta0)
 
     def _over(self, v: Floats) -> Floats:
         """How far [m] fibres of hand 1 lie outside of the surface of centre lines: +-d/2 where they cross others."""
-        return 0.5 * self.diameter * np.cos(self.fibres // 2 * v / self._turn)
+        return 0.5 * self.diameter * np.cos(self.fibres // 2 * self.tube.turned(v))
 
     def _fineness(self) -> tuple[int, int]:
         """Points from one crossing to the next, and sides of the bars."""
@@ -128,10 +133,10 @@ class Body:
         if self.kept is None:
             return [v]
         low, high = self.kept
-        first, last = sorted((start, start + hand * float(v[-1]) / self._turn))
+        first, last = sorted((start, start + hand * float(self.tube.turned(v[-1]))))
         pieces = []
         for turn in range(math.floor((first - high) / (2.0 * np.pi)), math.ceil((last - low) / (2.0 * np.pi)) + 1):
-            ends = (np.array([low, high]) + 2.0 * np.pi * turn - start) * hand * self._turn
+            ends = self.tube.reached((np.array([low, high]) + 2.0 * np.pi * turn - start) * hand)
             a, b = np.clip(np.sort(ends), 0.0, v[-1])
             if b - a > 1e-3 * self._turn:
                 pieces.append(np.concatenate([[a], v[(v > a + 1e-9 * b) & (v < b - 1e-9 * b)], [b]]))
@@ -152,12 +157,12 @@ def display_diameter(muscle: Muscle) -> float:
     if own is not None:
         return float(own)
     braid = muscle.braid
-    room = 2.0 * math.pi * float(braid.radius) * math.sin(float(braid.angle)) / (int(braid.fibres) // 2)
+    room = 2.0 * math.pi * float(braid.radius) * math.sin(extremes(braid)[0]) / (int(braid.fibres) // 2)
     return min(SHARE * room, 0.1 * float(braid.radius))
 
 
 def drawn_fibres(tube: Tube) -> int:
     """How many fibres are drawn: all, or of a braid with very many crossings fewer, as if it had no more."""
-    per_fibre = tube.v[-1] / (np.pi * tube.R0 * math.tan(tube.theta0))  # crossings, over the fibres of one hand
+    per_fibre = float(tube.turned(tube.v[-1])) / np.pi  # crossings, over the fibres of one hand
     most = 2 * int(math.sqrt(CROSSINGS / (2.0 * per_fibre)))
     return max(2, min(tube.fibres, most))

@@ -10,10 +10,13 @@ from numpy.typing import NDArray
 
 from mckibben.results.result import Result
 from mckibben.spec import Muscle
+from mckibben.spec.winding import turned
 
 Floats = NDArray[np.float64]
 FACETS = 40
 """Facets along the length and around the visible half."""
+PLACES = 513
+"""Places at which the way of a fibre around a programmed braid is known."""
 
 
 @attrs.frozen
@@ -26,23 +29,27 @@ class Tube:
     R0: float
     theta0: float
     fibres: int
+    turns: tuple[Floats, Floats] | None = None
+    """Of a programmed braid, at many v [m] how far a fibre has gone around there [rad]."""
 
     @classmethod
     def of(cls, result: Result, step: int) -> Tube:
         """The shape of one state of a result."""
         data, braid = result.data.isel(step=step), result.muscle.braid
         r, z = np.asarray(data["r"]), np.asarray(data["z"])
-        return cls(np.asarray(data["v"]), r, z, float(braid.radius), float(braid.angle), int(braid.fibres))
+        made = float(braid.radius), float(braid.angle), int(braid.fibres)
+        return cls(np.asarray(data["v"]), r, z, *made, _turns(result.muscle))
 
     @classmethod
     def cylinder(cls, muscle: Muscle, theta: float | None = None) -> Tube:
         """The uniform cylinder at braid angle theta [rad]: the muscle as made where none is given."""
         braid = muscle.braid
         R0, H0, theta0 = float(braid.radius), float(braid.length), float(braid.angle)
+        turns = _turns(muscle) if theta is None else None
         theta = theta0 if theta is None else theta
         v = np.linspace(0.0, H0, 61)
         r = np.full(61, R0 * np.cos(theta) / np.cos(theta0))
-        return cls(v, r, v * np.sin(theta) / np.sin(theta0), R0, theta0, int(braid.fibres))
+        return cls(v, r, v * np.sin(theta) / np.sin(theta0), R0, theta0, int(braid.fibres), turns)
 
     def at(self, v: Any) -> tuple[Floats, Floats]:
         """r and z at material coordinates v."""
@@ -63,7 +70,22 @@ class Tube:
     def fibre(self, start: float, hand: int, count: int = 161) -> tuple[Floats, Floats]:
         """(v, phi) along one fibre: phi = start + hand v/(R0 tan(theta0)) (Eq. 7)."""
         v = np.linspace(self.v[0], self.v[-1], count)
-        return v, start + hand * v / (self.R0 * np.tan(self.theta0))
+        return v, start + hand * self.turned(v)
+
+    def turned(self, v: Any) -> Floats:
+        """How far [rad] a fibre has gone around at material coordinates v: the integral of dv/(R0 tan(theta0))."""
+        if self.turns is None:
+            return np.asarray(v / (self.R0 * np.tan(self.theta0)))
+        return np.interp(v, *self.turns)
+
+    def reached(self, turned: Any) -> Floats:
+        """Material coordinates [m] at which a fibre has gone that far around; beyond the ends at the rate there."""
+        if self.turns is None:
+            return np.asarray(turned * (self.R0 * np.tan(self.theta0)))
+        v, phi = self.turns
+        first, last = (v[1] - v[0]) / (phi[1] - phi[0]), (v[-1] - v[-2]) / (phi[-1] - phi[-2])
+        inside = np.interp(turned, phi, v)
+        return inside + first * np.minimum(turned - phi[0], 0.0) + last * np.maximum(turned - phi[-1], 0.0)
 
     def even(self) -> Floats:
         """Material coordinates at nearly even steps along the meridian, somewhat closer together at the ends."""
@@ -78,3 +100,11 @@ class Tube:
         """The surface at a distance [m], one or one per v, outwards along the normals."""
         normal = self.normal(self.v, 0.0)
         return attrs.evolve(self, r=np.maximum(self.r + out * normal[:, 0], 0.0), z=self.z + out * normal[:, 2])
+
+
+def _turns(muscle: Muscle) -> tuple[Floats, Floats] | None:
+    """How far a fibre of a programmed braid has gone around at many places; None for one angle."""
+    if muscle.braid.angle_profile is None:
+        return None
+    share = np.linspace(0.0, 1.0, PLACES)
+    return share * float(muscle.braid.length), turned(muscle.braid, share)
