@@ -56,7 +56,9 @@ def report(rows: list[dict[str, Any]]) -> list[str]:
     lost = [row for row in rows if row.get("finite") is False]
     told = sum(row["told"] for row in lost)
     tipping = sum(row.get("stable") is False for row in rows)
-    said = SAID.format(count=len(rows), results=", ".join(RESULTS), lost=len(lost), told=told, tipping=tipping)
+    away = sum(row.get("lost", False) for row in rows)
+    counts = {"count": len(rows), "lost": len(lost), "told": told, "tipping": tipping, "away": away}
+    said = SAID.format(results=", ".join(RESULTS), **counts)
     text = fill(said, 120)
     out = ["", *text.splitlines(), *table(["test", "muscles", "crashes", "with both states", *HEAD], lines)]
     out += table(["result", *HEAD], results)
@@ -66,9 +68,9 @@ def report(rows: list[dict[str, Any]]) -> list[str]:
 
 
 LISTED = 12
-PEAKS = """What is left with a tolerance of 1e-10 is no error of the states. The largest tension and radius are those of
-the series through the points of the mesh (`measure/peak.py`), whose error the derivatives share; it is not looked at by
-the tolerance, which is for force and length."""
+PEAKS = """What is left with a tolerance of 1e-10 is no error of the states. It is in slopes next to zero, where the
+differences show how volumes held near full extension and energies at rest round; and in the largest tension and radius,
+those of the series through the points of the mesh (`measure/peak.py`), which the tolerance does not look at."""
 HEAD = ["slopes", "median difference", "99.9%", "largest", "above 1e-5", "beyond doubt", "also with 1e-10"]
 LAST = ["muscle", "test", "ends", "slope", "derivative", "by differences", "difference", "doubt", "with 1e-10"]
 
@@ -95,4 +97,5 @@ three times that is not held against the derivatives. A difference is relative t
 slope of the same result (at least 1) where that is more. Where a muscle's derivatives differ by more than 1e-5, those
 of a call with a tolerance of 1e-10 are compared too: what is gone then was the error of the discretisation. Of {lost}
 muscles a state was not reached; {told} of these have derivatives that are not finite, as they should. Of {tipping} more
-`mk.run` calls a state unstable or inadmissible: a step may tip it over, so these are left out."""
+`mk.run` calls a state unstable or inadmissible: a step may tip it over, so these are left out. Of {away} a step of the
+differences, or the way to the derivatives, lost a state that is there: nothing wrong is told, and they are left out."""

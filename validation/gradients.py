@@ -101,6 +101,8 @@ def measure(k: int) -> dict[str, Any]:
         }
         for name in RESULTS
     }
+    if not all(np.isfinite(part).all() for slopes in row["slopes"].values() for part in slopes.values()):
+        return row | {"slopes": None, "lost": True}
     if max(line["relative"] for line in compared(row)) > LIMIT:
         fine = jax.jacfwd(partial(values, tree=tree, tolerance=FINE))(leaves)
         for name in RESULTS:
