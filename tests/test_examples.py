@@ -126,6 +126,13 @@ def test_gap(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.Cap
     assert (tmp_path / "out" / "gap.png").stat().st_size > 10_000
 
 
+def test_programmed_braid(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]) -> None:
+    rows = printed("programmed_braid.py", tmp_path, monkeypatch, capsys)
+    assert rows[0] == pytest.approx([50.0, 52.5, 44.4], abs=0.06)
+    assert rows[1] == pytest.approx([120.0, 0.05], abs=0.011)
+    assert (tmp_path / "out" / "programmed_braid.png").stat().st_size > 10_000
+
+
 def test_fit_bench(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]) -> None:
     rows = printed("fit_bench.py", tmp_path, monkeypatch, capsys)
     angle, c1 = rows[0][0], rows[1][1]
