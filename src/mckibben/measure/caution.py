@@ -41,8 +41,9 @@ THICK_WALL = 0.2
 
 
 def cautions(muscle: Muscle, *, length: Any, pressure: Any) -> tuple[str, ...]:
-    """Cautions about a target before anything is solved, by the uniform cylinder of that length that does not stretch;
-    of a programmed braid by that of one angle whose fibres are as long.
+    """Cautions about a target before anything is solved, by the uniform cylinder of that length that does not stretch.
+
+    Of a programmed braid it is the cylinder of one angle whose fibres are as long.
 
     Thick wall, wrinkling, jammed fibres, a column that bows, fibre tension above the breaking force if one is given, a
     pressure above 100 bar, and of a chamber inside the braid a pressure too low for it to touch the braid, or so high
