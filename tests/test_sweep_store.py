@@ -206,7 +206,8 @@ def test_command_line(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     assert "3: 36 to 38 deg" in shown
     assert invoke("run", file)[2] == f"mckibben: {file}: describes a sweep; give it to mckibben sweep\n"
     code, shown, errors = invoke("sweep", file, "--workers", 0)
-    assert (code, errors) == (3, "")
+    alone = "mckibben: 6 of 6 designs were solved one by one: 6 for states that are not there\n"
+    assert (code, errors) == (3, alone)
     assert "incomplete         6   state 0: no equilibrium: the fibres" in shown
     assert "mckibben.load(" in shown
     code, shown, _ = invoke("sweep", file, "--json")  # all there: no workers are started

@@ -79,9 +79,9 @@ def say(*things: Any, style: str | None = None, whole: bool = False) -> None:
     console.print(*things, style=style, soft_wrap=all(isinstance(thing, str) for thing in things))
 
 
-def complain(message: str) -> None:
+def complain(message: str, style: str | None = "red") -> None:
     """One line on stderr."""
-    _console(stderr=True).print(f"mckibben: {message}", style="red", soft_wrap=True)
+    _console(stderr=True).print(f"mckibben: {message}", style=style, soft_wrap=True)
 
 
 def show_json(value: dict[str, Any]) -> None:

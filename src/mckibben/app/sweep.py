@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import sys
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
@@ -13,7 +14,7 @@ from mckibben.app.options import Quiet, Tolerance
 if TYPE_CHECKING:
     from xarray import Dataset
 
-__all__ = ["EPILOG", "counts", "sweep"]
+__all__ = ["EPILOG", "counts", "one_by_one", "sweep"]
 
 EPILOG = examples(
     "mckibben sweep sweep.toml -o out.zarr",
@@ -81,6 +82,8 @@ def sweep(
         complain(f"interrupted: {kept}; the same command goes on from there")
         return INTERRUPTED
     found = counts(data)
+    if not quiet and not sys.stderr.isatty() and (words := one_by_one(data)):
+        complain(words, style=None)
     if as_json:
         show_json(_summary(data, found, str(target)))
     elif not quiet:
@@ -97,6 +100,29 @@ def counts(data: Dataset) -> dict[str, int]:
     status = data["status"].values
     found = {word: int((status == value).sum()) for word, value in zip(words, values, strict=True)}
     return {word: count for word, count in sorted(found.items(), key=lambda item: -item[1]) if count}
+
+
+def one_by_one(data: Dataset) -> str:
+    """How many designs were solved one by one, which takes far longer than in a batch, and why; empty for none."""
+    import numpy as np
+
+    def which(name: str, word: str) -> Any:
+        flags = data[name].attrs
+        values = dict(zip(flags["flag_meanings"].split(), np.atleast_1d(flags["flag_values"]), strict=True))
+        return data[name].values == values[word]
+
+    alone = which("method", "single").ravel()
+    if not alone.any():
+        return ""
+    lost = ~which("status", "complete").ravel()
+    shaky = ~which("verdict", "stable").reshape(alone.size, -1).all(axis=1) & ~lost
+    reasons = {
+        "states that are not there": lost,
+        "states that are not stable": shaky,
+        "a test, a muscle or a step that batches do not take or follow": ~lost & ~shaky,
+    }
+    told = [f"{(alone & part).sum()} for {why}" for why, part in reasons.items() if (alone & part).any()]
+    return f"{alone.sum()} of {alone.size} designs were solved one by one: {', '.join(told)}"
 
 
 def _summary(data: Dataset, found: dict[str, int], target: str) -> dict[str, Any]:
