@@ -6,6 +6,7 @@ space, JSON), d for the whole, e for an error of whoever asked, f for a fault of
 
 from __future__ import annotations
 
+import gc
 import json
 import os
 import queue
@@ -17,6 +18,9 @@ from typing import IO
 from mckibben.page.tasks import TaskError, perform
 
 __all__ = ["main", "serve"]
+
+REST = 1.0
+"""Seconds without a task after which there is time to tidy up."""
 
 
 def serve(line: str, out: IO[str]) -> None:
@@ -50,8 +54,15 @@ def main() -> None:
 
     sys.stdin.reconfigure(encoding="utf-8")  # type: ignore[union-attr]
     threading.Thread(target=read, daemon=True).start()
+    gc.set_threshold(100_000, 20, 20)  # beside many objects that live long a whole collection takes a tenth of a second
     while True:
-        serve(lines.get(), out)
+        try:
+            line = lines.get(timeout=REST)
+        except queue.Empty:
+            gc.collect()
+            gc.freeze()  # what a kind of muscle left behind, its traces above all, is not looked through again
+            line = lines.get()
+        serve(line, out)
 
 
 if __name__ == "__main__":
