@@ -15,6 +15,7 @@ from scipy.optimize import fsolve
 
 import mckibben as mk
 from mckibben.designing.space import space_of
+from mckibben.measure.bow import left_to_bow
 from mckibben.model.kinematics import natural_strains
 from mckibben.model.parameters import parameters
 from mckibben.model.point import Point
@@ -305,6 +306,21 @@ def test_in_sweeps_fits_and_files() -> None:
 def test_what_is_refused(change: dict[str, Any], said: str) -> None:
     with pytest.raises(mk.SpecError, match=said):
         changed_muscle(halves(), change)
+
+
+def test_the_margin_against_bowing_takes_the_mean_braid() -> None:
+    """That of one angle, whose fibres are as long, and not that of the first end."""
+    length, force = np.array([0.085, 0.08]), np.array([-40.0, -60.0])
+
+    def left(muscle: mk.Muscle) -> np.ndarray:
+        twice = jax.tree.map(lambda number: jnp.stack([jnp.asarray(number)] * 2), parameters(muscle))
+        return left_to_bow(twice, length, force, P)
+
+    made = halves()
+    even = UNIFORM.replace("braid.angle", math.asin(H0 / fibre_length(made.braid)))
+    assert left(programmed(37.0, 37.0, mirrored=True)) == pytest.approx(left(UNIFORM), rel=1e-12)
+    assert left(made) == pytest.approx(left(even), rel=1e-9)
+    assert left(made)[0] > left(UNIFORM)[0] + 0.01
 
 
 def test_what_knows_one_angle_alone() -> None:

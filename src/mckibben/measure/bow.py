@@ -11,6 +11,7 @@ from mckibben.compiled.arrays import Array
 from mckibben.compiled.kernel import kernel
 from mckibben.model.column import bending_stiffness, column_load
 from mckibben.model.parameters import Parameters
+from mckibben.model.profile import evened
 
 __all__ = ["left_to_bow"]
 
@@ -19,9 +20,13 @@ __all__ = ["left_to_bow"]
 def _loads(
     p: Parameters, length: Float[Array, " n"], force: Float[Array, " n"], pressure: Float[Array, " n"]
 ) -> Float[Array, " n"]:
-    """Push [N] from which each of n cylinders of a length of braid [m] bows; all numbers of p are arrays (n)."""
+    """Push [N] from which each of n cylinders of a length of braid [m] bows; all numbers of p are arrays (n).
+
+    A programmed braid is taken as that of one angle whose fibres are as long.
+    """
 
     def one(p: Parameters, length: Array, force: Array, pressure: Array) -> Array:
+        p = evened(p)
         theta = jnp.arcsin(jnp.clip(length * jnp.sin(p.theta0) / p.H0, 0.0, 1.0))
         return column_load(length, bending_stiffness(theta, force, pressure, p))
 
