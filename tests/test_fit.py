@@ -218,6 +218,7 @@ def test_one_of_several_numbers_has_a_range() -> None:
     first, last = free_numbers(narrow, {"end_radii[1]": "9 mm to 12.5 mm", "end_radii[0]": (0.01, 0.012)}, {})
     assert (first.name, first.low, first.high, first.start) == ("end_radii[1]", 0.009, 0.0125, 0.012)
     assert (last.low, last.high, last.start) == (0.01, 0.012, 0.011)
+    assert last.text(last.high) == "12 mm"  # in the unit of people, as a field of one number
     changed = put_in(narrow, (first, last), np.array([0.0105, 0.0115]))
     assert changed.end_radii == (0.0115, 0.0105)
     ogden = narrow.replace("chamber.law", mk.Ogden(mu=["20 kPa", "5 kPa"], alpha=[2.0, 4.0]))

@@ -122,7 +122,7 @@ def quantities(
     return declare(
         Declared(
             kind="quantities", read=read, unit=unit, meaning=meaning, low=low, high=high, low_open=low_open,
-            high_open=high_open, size=size, display=display, source=source, advice=advice,
+            high_open=high_open, size=size, display=display or DISPLAY.get(unit, ""), source=source, advice=advice,
             default=default, doubt=doubt, quiet=default is None,
         )
     )  # fmt: skip
