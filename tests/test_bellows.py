@@ -9,9 +9,8 @@ import pytest
 from numpy.testing import assert_allclose
 
 import mckibben as mk
-from mckibben.discretise.fields import place
+from mckibben.discretise.fields import place, states
 from mckibben.measure.mass import mass_of
-from mckibben.measure.read import states_at
 from mckibben.model.cylinder import cylinder_force
 from mckibben.model.energy import stored
 from mckibben.model.kinematics import meridian_stretch, radius
@@ -118,7 +117,7 @@ def test_states_are_the_slopes_of_one_potential() -> None:
     by_stiffness = (potential(K + 1e-3, h, P) - potential(K - 1e-3, h, P)) / 2e-3
     problem = state.problem
     on = place(problem.basis, problem.p, problem.b)
-    stretch = meridian_stretch(states_at(problem.basis, on, state.u), problem.p)
+    stretch = meridian_stretch(states(problem.basis, on, state.u), problem.p)
     each = problem.basis.operators().weights * on.jacobian @ (0.5 * (stretch - 1.0) ** 2)
     assert_allclose(by_stiffness, each, rtol=1e-6)
 

@@ -12,7 +12,7 @@ from mckibben.app.console import COMPLETE, INCOMPLETE, INTERRUPTED, command, com
 from mckibben.app.options import Quiet, Tolerance
 
 if TYPE_CHECKING:
-    from xarray import Dataset
+    from xarray import DataArray, Dataset
 
 __all__ = ["EPILOG", "counts", "one_by_one", "sweep"]
 
@@ -93,29 +93,17 @@ def sweep(
 
 def counts(data: Dataset) -> dict[str, int]:
     """Number of designs by status, the most frequent first; a status that no design has is left out."""
-    import numpy as np
-
-    words = [word.replace("_", " ") for word in data["status"].attrs["flag_meanings"].split()]
-    values = np.asarray(data["status"].attrs["flag_values"])
-    status = data["status"].values
-    found = {word: int((status == value).sum()) for word, value in zip(words, values, strict=True)}
+    found = {word.replace("_", " "): int(has.sum()) for word, has in _flagged(data["status"]).items()}
     return {word: count for word, count in sorted(found.items(), key=lambda item: -item[1]) if count}
 
 
 def one_by_one(data: Dataset) -> str:
     """How many designs were solved one by one, which takes far longer than in a batch, and why; empty for none."""
-    import numpy as np
-
-    def which(name: str, word: str) -> Any:
-        flags = data[name].attrs
-        values = dict(zip(flags["flag_meanings"].split(), np.atleast_1d(flags["flag_values"]), strict=True))
-        return data[name].values == values[word]
-
-    alone = which("method", "single").ravel()
+    alone = _flagged(data["method"])["single"].ravel()
     if not alone.any():
         return ""
-    lost = ~which("status", "complete").ravel()
-    shaky = ~which("verdict", "stable").reshape(alone.size, -1).all(axis=1) & ~lost
+    lost = ~_flagged(data["status"])["complete"].ravel()
+    shaky = ~_flagged(data["verdict"])["stable"].reshape(alone.size, -1).all(axis=1) & ~lost
     reasons = {
         "states that are not there": lost,
         "states that are not stable": shaky,
@@ -125,17 +113,19 @@ def one_by_one(data: Dataset) -> str:
     return f"{alone.sum()} of {alone.size} designs were solved one by one: {', '.join(told)}"
 
 
+def _flagged(variable: DataArray) -> dict[str, Any]:
+    """By each word of a variable of flags, where it holds."""
+    words, flags = variable.attrs["flag_meanings"].split(), variable.attrs["flag_values"]
+    return {word: variable.values == flag for word, flag in zip(words, flags, strict=True)}
+
+
 def _summary(data: Dataset, found: dict[str, int], target: str) -> dict[str, Any]:
     sizes = {str(name): int(size) for name, size in data.sizes.items()}
     return {"file": target, "complete": set(found) == {"complete"}, "dimensions": sizes, "designs": found}
 
 
 def _show(data: Dataset, found: dict[str, int], target: str) -> None:
-    status, reason = data["status"].values.ravel(), data["reason"].values.ravel()
-    values = dict(zip(data["status"].attrs["flag_meanings"].split(), data["status"].attrs["flag_values"], strict=True))
-    rows = []
-    for word, count in found.items():
-        which = status == values[word.replace(" ", "_")]
-        rows.append((word, str(count), str(reason[which][0])))
+    which, reason = _flagged(data["status"]), data["reason"].values
+    rows = [(word, str(count), str(reason[which[word.replace(" ", "_")]][0])) for word, count in found.items()]
     say(table(("status", "designs", "the first because"), rows, right=(1,), title=data.attrs["title"]))
     say(f"saved to {target}: open it with mckibben.load({target!r})")

@@ -43,7 +43,6 @@ __all__ = [
     "read",
     "read_many",
     "stable",
-    "states_at",
     "with_kinks",
 ]
 
@@ -74,7 +73,7 @@ def read(basis: Basis, on: Placed, state: Unknowns, kept: Any = None) -> Reading
     p, sampling, operators = on.p, basis.sampling(nodes(basis)), basis.operators()
     F, P = state.loads[0] * on.unit[0] / on.unit[1], state.loads[1] * on.unit[0] / on.unit[2]
     M = state.loads[2] * on.unit[0] if basis.closes else 0.0
-    inner, memory = states_at(basis, on, state.u), state.memory
+    inner, memory = states(basis, on, state.u), state.memory
     outer = points_at(basis, on, state.u, sampling)
     inner, outer = (jax.vmap(lambda at: inflated(at, P, p))(one) for one in (inner, outer))
 
@@ -125,11 +124,6 @@ def with_kinks(reading: Reading, basis: Basis, on: Placed, state: Unknowns, s: S
     if not leaves(on.p):
         return reading
     return reading._replace(missed=missed(basis, on, state, s, basis.sampling(nodes(basis))))
-
-
-def states_at(basis: Basis, on: Placed, u: Array) -> Point:
-    """The state at the quadrature points."""
-    return states(basis, on, u)
 
 
 def _densities(at: Point, p: Parameters, memory: Any = None) -> dict[str, Number]:

@@ -12,8 +12,8 @@ from jaxtyping import Bool, Float, Int
 
 from mckibben.compiled.arrays import Array
 from mckibben.compiled.kernel import kernel
-from mckibben.discretise.fields import Placed, place, points_at
-from mckibben.measure.read import costates, nodes, states_at
+from mckibben.discretise.fields import Placed, place, points_at, states
+from mckibben.measure.read import costates, nodes
 from mckibben.model.energy import works
 from mckibben.model.friction import Crossing, after_step, as_made, crossings, slip_moment, turn
 from mckibben.model.gap import inflated
@@ -130,7 +130,7 @@ def rub(
 def _after(basis: Basis, on: Placed, begun: Unknowns, found: _Round) -> Stepped:
     """What a step from a state leaves behind."""
     p, state = on.p, found.state
-    inner, outer = states_at(basis, on, state.u), points_at(basis, on, state.u, basis.sampling(nodes(basis)))
+    inner, outer = states(basis, on, state.u), points_at(basis, on, state.u, basis.sampling(nodes(basis)))
     next_inner, next_outer = (
         jax.vmap(lambda at, memory: after_step(at, p, memory))(at, memory)
         for at, memory in ((inner, state.memory), (outer, found.outer))
@@ -144,12 +144,12 @@ def _after(basis: Basis, on: Placed, begun: Unknowns, found: _Round) -> Stepped:
     mean = 0.5 * (begun.memory.moment + state.memory.moment)  # of second order in the step, and never negative
     slipped = mean * jnp.abs(next_inner.alpha - state.memory.alpha)
     weights = jnp.asarray(basis.operators().weights) * on.jacobian
-    slipped = slipped if inner.made is None else crossings(inner, p) * slipped
+    many = crossings(inner, p)
     good = found.good & (found.change <= SETTLED) & jnp.isfinite(state.u).all()
     return Stepped(
         state, found.outer, next_inner, next_outer, jnp.stack([weights @ one for one in rates[:2]]),
-        weights @ slipped if inner.made is not None else crossings(inner, p) * (weights @ slipped),
-        jnp.abs(turned(inner) - turned(states_at(basis, on, begun.u))).max(), found.iterations, good,
+        many * (weights @ slipped) if inner.made is None else weights @ (many * slipped),
+        jnp.abs(turned(inner) - turned(states(basis, on, begun.u))).max(), found.iterations, good,
     )  # fmt: skip
 
 
@@ -158,7 +158,7 @@ def moments(basis: Basis, on: Placed, state: Unknowns, kept: Crossing) -> tuple[
     p, sampling = on.p, basis.sampling(nodes(basis))
     F, P = state.loads[0] * on.unit[0] / on.unit[1], state.loads[1] * on.unit[0] / on.unit[2]
     M = state.loads[2] * on.unit[0] if basis.closes else 0.0
-    inner, outer = states_at(basis, on, state.u), points_at(basis, on, state.u, sampling)
+    inner, outer = states(basis, on, state.u), points_at(basis, on, state.u, sampling)
     inner, outer = (jax.vmap(lambda at: inflated(at, P, p))(one) for one in (inner, outer))
     along = costates(basis, on, inner, (F, P, M), sampling, state.memory)
 
