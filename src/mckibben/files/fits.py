@@ -12,11 +12,10 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from mckibben.files.hdf5 import opened
-from mckibben.files.stored import checked, muscle_in
+from mckibben.files.stored import FOUND, checked, muscle_in, of_numbers
 from mckibben.files.stored import write as written
 from mckibben.files.table import write
 from mckibben.results.fit import POINTS, Fitted
-from mckibben.results.found import NUMBERS
 from mckibben.spec.errors import SpecError
 
 if TYPE_CHECKING:
@@ -25,13 +24,10 @@ if TYPE_CHECKING:
 __all__ = ["load", "of", "save", "save_csv"]
 
 _NEEDED: dict[str, tuple[tuple[str, ...], str]] = {
-    **{name: (("number",), "f") for name in NUMBERS},
+    **FOUND,
     **{name: (("point",), "f") for name in POINTS},
-    **{name: (("number", "other"), "f") for name in ("correlation", "covariance")},
-    **{name: (("number",), "U") for name in ("number", "unit", "display", "meaning")},
     **{name: (("point",), "U") for name in ("test", "branch")},
-    "other": (("other",), "U"), "undetermined": (("number",), "b"),
-}  # fmt: skip
+}
 """What a file must have: dimensions, and NumPy's letter of the kind of data."""
 _ABOUT = {"muscle": str, "given": str, "notes": str, "source": str, "mckibben_version": str, "converged": int,
           "level": float, "force_error": float}  # fmt: skip
@@ -75,12 +71,7 @@ def _notes(fit: Fitted) -> Iterator[str]:
     yield f"{fit.goodness}; R squared {fit.explained:.6g}"
     yield "residual: force of the fitted muscle (offsets included) less the measured one; units are SI, in brackets"
     yield ""
-    yield f"the numbers, with intervals at {100.0 * about['level']:g} %:"
-    for name, row in fit.table.iterrows():
-        yield f"{name}: {row['value']}, standard error {row['error'] or 'unknown'}, interval {row['interval']}"
-    yield ""
-    yield from (f"note: {line}" for line in fit.notes)
-    yield ""
+    yield from of_numbers(fit)
     for k, text in enumerate([about["muscle"], *(fit.data["further"].values.tolist() if fit.further else [])]):
         yield f"the fitted muscle{f', number {k + 1}' if fit.further else ''} (TOML):"
         yield from text.splitlines()

@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
+from importlib import import_module
 from os import PathLike
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 from mckibben import disk
 from mckibben.spec.errors import SpecError
@@ -21,6 +23,13 @@ if TYPE_CHECKING:
 __all__ = ["SUFFIXES", "check_output", "load", "load_result", "save", "suffix_of"]
 
 SUFFIXES = {".nc": "everything, to be loaded again (NetCDF-4)", ".csv": "the table of states, with notes beside it"}
+
+
+_HELD = {
+    "fit": "fits", "design": "designs", "chart": "charts", "motion": "motions", "motion fit": "motionfits",
+    "tolerances": "tolerances",
+}  # fmt: skip
+"""The module that reads what a file says that it holds; a file of a result says nothing."""
 
 
 def suffix_of(path: str | PathLike[str], allowed: dict[str, str] = SUFFIXES) -> str:
@@ -50,9 +59,8 @@ def save(result: Any, path: str | PathLike[str], force: bool = False) -> Path:
     what was computed and by what is in a text file beside it ("out.csv.txt").
 
     Args:
-        result: what `run`, `solve`, `fit`, `design`, `chart`, `simulate`, `fit_motion` or `tolerances` gave.
-            Of a `State` its `result` is saved, and that is
-            what `load` gives.
+        result: what `run`, `solve`, `fit`, `design`, `chart`, `simulate`, `fit_motion` or `tolerances` gave. Of a
+            `State` its `result` is saved, and that is what `load` gives.
         path: the file; its ending says the format. It is written whole or not at all.
         force: replace a file that is there already.
 
@@ -67,74 +75,48 @@ def save(result: Any, path: str | PathLike[str], force: bool = False) -> Path:
     >>> mk.save(curve, "curve.nc").name
     'curve.nc'
     """
-    result = _result(result)
-    from mckibben.results.result import Result
+    from mckibben.results.result import State
 
-    whole = suffix_of(path) == ".nc"
-    if not isinstance(result, Result):
-        from mckibben.results.fit import Fitted
-
-        if isinstance(result, Fitted):
-            from mckibben.files import fits
-
-            return (fits.save if whole else fits.save_csv)(result, path, force)
-        from mckibben.potential.chart import Chart
-
-        if isinstance(result, Chart):
-            from mckibben.files import charts
-
-            return (charts.save if whole else charts.save_csv)(result, path, force)
-        from mckibben.results.motion import Motion
-
-        if isinstance(result, Motion):
-            from mckibben.files import motions
-
-            return (motions.save if whole else motions.save_csv)(result, path, force)
-        from mckibben.results.motionfit import MotionFit
-
-        if isinstance(result, MotionFit):
-            from mckibben.files import motionfits
-
-            return (motionfits.save if whole else motionfits.save_csv)(result, path, force)
-        from mckibben.results.tolerances import Tolerances
-
-        if isinstance(result, Tolerances):
-            from mckibben.files import table, tolerances
-
-            return (tolerances.save if whole else table.save_tolerances)(result, path, force)
-        from mckibben.files import designs
-
-        return (designs.save if whole else designs.save_csv)(result, path, force)
-    if whole:
-        from mckibben.files import netcdf
-
-        return netcdf.save(result, path, force)
-    from mckibben.files import table
-
-    return table.save_csv(result, path, force)
+    result = result.result if isinstance(result, State) else result
+    kind = next((one for one in _kinds() if isinstance(result, one.type)), None)
+    if kind is None:
+        calls = "run, solve, fit, design, chart, simulate, fit_motion or tolerances gave"
+        if hasattr(result, "to_netcdf"):
+            advice = 'write a Dataset with data.to_netcdf("x.nc")'
+            raise SpecError("save", allowed=f"takes what {calls}", advice=advice)
+        raise SpecError("save", result, f"must be what {calls}")
+    written: Path = (kind.save if suffix_of(path) == ".nc" else kind.save_csv)(result, path, force)
+    return written
 
 
-def _result(given: Any) -> Result | Fitted | Designed | Chart | Motion | MotionFit | Tolerances:
+class _Kind(NamedTuple):
+    """A kind of answer, and what puts it into files."""
+
+    said: str  #: the word for people
+    type: type
+    save: Callable[..., Path]
+    save_csv: Callable[..., Path]
+
+
+def _kinds() -> tuple[_Kind, ...]:
+    """All of them; imported here, because most calls need none."""
+    from mckibben.files import charts, designs, fits, motionfits, motions, netcdf, table, tolerances
     from mckibben.potential.chart import Chart
     from mckibben.results.design import Designed
     from mckibben.results.fit import Fitted
     from mckibben.results.motion import Motion
     from mckibben.results.motionfit import MotionFit
-    from mckibben.results.result import Result, State
+    from mckibben.results.result import Result
     from mckibben.results.tolerances import Tolerances
 
-    if isinstance(given, State):
-        return given.result
-    if isinstance(given, (Result, Fitted, Designed, Chart, Motion, MotionFit, Tolerances)):
-        return given
-    if hasattr(given, "to_netcdf"):
-        raise SpecError(
-            "save",
-            allowed="takes what run, solve, fit, design, chart, simulate, fit_motion or tolerances gave",
-            advice='write a Dataset with data.to_netcdf("x.nc")',
-        )
-    raise SpecError(
-        "save", given, "must be what run, solve, fit, design, chart, simulate, fit_motion or tolerances gave"
+    return (
+        _Kind("result", Result, netcdf.save, table.save_csv),
+        _Kind("fit", Fitted, fits.save, fits.save_csv),
+        _Kind("design", Designed, designs.save, designs.save_csv),
+        _Kind("map", Chart, charts.save, charts.save_csv),
+        _Kind("motion", Motion, motions.save, motions.save_csv),
+        _Kind("fit of a motion", MotionFit, motionfits.save, motionfits.save_csv),
+        _Kind("set of tolerances", Tolerances, tolerances.save, table.save_tolerances),
     )
 
 
@@ -144,34 +126,12 @@ def load(path: str | PathLike[str]) -> Result | Fitted | Designed | Chart | Moti
         raise SpecError(str(path), allowed="is a table only", advice="save results as .nc to load them again")
     if Path(path).suffix.lower() == ".zarr":
         raise SpecError(str(path), allowed="holds a sweep, not one result", advice="open it with mckibben.load")
-    from mckibben.files import hdf5, netcdf
+    from mckibben.files import hdf5
 
     stored = hdf5.opened(path)
-    if hdf5.kind(stored) == "fit":
-        from mckibben.files import fits
-
-        return fits.of(stored, str(path))
-    if hdf5.kind(stored) == "design":
-        from mckibben.files import designs
-
-        return designs.of(stored, str(path))
-    if hdf5.kind(stored) == "chart":
-        from mckibben.files import charts
-
-        return charts.of(stored, str(path))
-    if hdf5.kind(stored) == "motion":
-        from mckibben.files import motions
-
-        return motions.of(stored, str(path))
-    if hdf5.kind(stored) == "motion fit":
-        from mckibben.files import motionfits
-
-        return motionfits.of(stored, str(path))
-    if hdf5.kind(stored) == "tolerances":
-        from mckibben.files import tolerances
-
-        return tolerances.of(stored, str(path))
-    return netcdf.of(stored, str(path))
+    module = import_module(f"mckibben.files.{_HELD.get(hdf5.kind(stored), 'netcdf')}")  # which says what is wrong
+    found: Result | Fitted | Designed | Chart | Motion | MotionFit | Tolerances = module.of(stored, str(path))
+    return found
 
 
 def load_result(path: str | PathLike[str]) -> Result:
@@ -180,10 +140,6 @@ def load_result(path: str | PathLike[str]) -> Result:
     from mckibben.results.result import Result
 
     if not isinstance(found, Result):
-        known = (
-            ("quantities", "fit of a motion"), ("residuals", "fit"), ("free_length", "map"), ("consumed", "motion"),
-            ("quantiles", "set of tolerances"),
-        )  # fmt: skip
-        what = next((name for has, name in known if hasattr(found, has)), "design")
+        what = next(kind.said for kind in _kinds() if isinstance(found, kind.type))
         raise SpecError(str(path), allowed=f"holds a {what}, not a result", advice="open it with mckibben.load")
     return found

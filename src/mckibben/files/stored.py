@@ -1,9 +1,9 @@
-"""What fits and designs share in files: their Dataset written, read back and checked, and the muscles in it."""
+"""What kinds of answers share in files: their Dataset written, read back and checked, and the muscles in it."""
 
 from __future__ import annotations
 
 import tomllib
-from collections.abc import Mapping
+from collections.abc import Callable, Iterator, Mapping
 from os import PathLike
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from mckibben.files.hdf5 import HOLDS, kind, written
+from mckibben.results.found import NUMBERS, Found
 from mckibben.spec import Muscle
 from mckibben.spec.errors import SpecError
 from mckibben.spec.plausible import trusted
@@ -19,10 +20,17 @@ from mckibben.spec.text import muscle_from_mapping
 if TYPE_CHECKING:
     import xarray as xr
 
-__all__ = ["Needed", "checked", "muscle_in", "write"]
+__all__ = ["FOUND", "Needed", "checked", "muscle_in", "of_numbers", "rebuilt", "write"]
 
 Needed = Mapping[str, tuple[tuple[str, ...], str]]
 """Of each variable that must be there: its dimensions, and NumPy's letter of the kind of data."""
+FOUND: Needed = {
+    **{name: (("number",), "f") for name in NUMBERS},
+    **{name: (("number", "other"), "f") for name in ("correlation", "covariance")},
+    **{name: (("number",), "U") for name in ("number", "unit", "display", "meaning")},
+    "other": (("other",), "U"), "undetermined": (("number",), "b"),
+}  # fmt: skip
+"""The same of numbers that a fit found."""
 
 
 def write(data: xr.Dataset, what: str, path: str | PathLike[str], force: bool) -> Path:
@@ -71,11 +79,27 @@ def _plain(value: Any) -> Any:
 
 def muscle_in(name: str, text: str) -> Muscle:
     """The muscle that a file of this name has as TOML; SpecError where it cannot be built."""
+    muscle: Muscle = rebuilt(name, "muscle", text, muscle_from_mapping)
+    return muscle
+
+
+def rebuilt(name: str, what: str, text: str, build: Callable[[dict[str, Any]], Any]) -> Any:
+    """What a file of this name has as TOML, a muscle say; SpecError where it cannot be built."""
     try:
         with trusted():
-            return muscle_from_mapping(tomllib.loads(text))
+            return build(tomllib.loads(text))
     except SpecError as error:
         advice = "its numbers can be read with xarray.open_dataset"
-        raise SpecError(name, allowed=f"its muscle cannot be built again: {error}", advice=advice) from error
+        raise SpecError(name, allowed=f"its {what} cannot be built again: {error}", advice=advice) from error
     except (ValueError, RecursionError) as error:
-        raise SpecError(name, allowed="is damaged: its muscle is not TOML", advice="make it again") from error
+        raise SpecError(name, allowed=f"is damaged: its {what} is not TOML", advice="make it again") from error
+
+
+def of_numbers(found: Found) -> Iterator[str]:
+    """Notes beside a table: the numbers that a fit found, and what must be known of them."""
+    yield f"the numbers, with intervals at {100.0 * found.data.attrs['level']:g} %:"
+    for name, row in found.table.iterrows():
+        yield f"{name}: {row['value']}, standard error {row['error'] or 'unknown'}, interval {row['interval']}"
+    yield ""
+    yield from (f"note: {line}" for line in found.notes)
+    yield ""

@@ -2,16 +2,13 @@
 
 from __future__ import annotations
 
-import tomllib
 from os import PathLike
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from mckibben.files.stored import checked, muscle_in
+from mckibben.files.stored import checked, muscle_in, rebuilt
 from mckibben.files.stored import write as written
 from mckibben.results.tolerances import OF_NUMBERS, OF_RESULTS, SHARES, Tolerances
-from mckibben.spec.errors import SpecError
-from mckibben.spec.plausible import trusted
 from mckibben.spec.text import test_from_mapping
 
 if TYPE_CHECKING:
@@ -42,10 +39,5 @@ def of(stored: xr.Dataset, name: str) -> Tolerances:
     """The tolerances that a file of this name holds; SpecError where it holds something else."""
     axes = tuple(key for key in _NEEDED if key.partition("_")[0] in ("number", "result"))
     data = checked(stored, name, "tolerances", _NEEDED, _ABOUT, axes)
-    try:
-        with trusted():
-            test = test_from_mapping(tomllib.loads(data.attrs["test"]))
-    except (SpecError, ValueError, RecursionError) as error:
-        advice = "its numbers can be read with xarray.open_dataset"
-        raise SpecError(name, allowed=f"its test cannot be built again: {error}", advice=advice) from error
+    test = rebuilt(name, "test", data.attrs["test"], test_from_mapping)
     return Tolerances(muscle_in(name, data.attrs["muscle"]), test, data)

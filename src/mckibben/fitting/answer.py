@@ -11,7 +11,7 @@ import numpy as np
 from mckibben.data.values import Data
 from mckibben.experiments.run import run
 from mckibben.fitting.free import Free, put_in
-from mckibben.fitting.misfit import Points
+from mckibben.fitting.misfit import Compared, Points
 from mckibben.fitting.posterior import posterior
 from mckibben.fitting.search import Least
 from mckibben.fitting.together import AnyMisfit, misfit_of
@@ -26,7 +26,7 @@ from mckibben.spec.text import to_toml
 if TYPE_CHECKING:
     import xarray as xr
 
-__all__ = ["Fit", "Prediction", "answer"]
+__all__ = ["Fit", "Prediction", "answer", "of_numbers"]
 
 
 @attrs.frozen(eq=False)
@@ -213,6 +213,30 @@ class Fit(Fitted):
         )
 
 
+def of_numbers(
+    misfit: Compared, best: Least, spread: Spread, ends: tuple[np.ndarray, np.ndarray]
+) -> dict[str, Any]:  # fmt: skip
+    """Variables of a Dataset: what is known of each free number, SI, with the ends of its interval given in x."""
+    free = misfit.free
+    names = [one.name for one in free]
+    slopes = np.array([one.slope(float(x)) for one, x in zip(free, best.x, strict=True)])
+    known = {
+        "value": misfit.values(best.x), "error": spread.errors * slopes, "low": misfit.values(ends[0]),
+        "high": misfit.values(ends[1]), "from": np.array([one.low for one in free]),
+        "to": np.array([one.high for one in free]), "start": np.array([one.start for one in free]),
+    }  # fmt: skip
+    square = ("number", "other")
+    return {name: ("number", column, {"long_name": NUMBERS[name]}) for name, column in known.items()} | {
+        "number": ("number", names), "other": ("other", names),
+        "correlation": (square, spread.correlation),
+        "covariance": (square, spread.covariance * np.outer(slopes, slopes)),
+        "undetermined": ("number", spread.undetermined),
+        "unit": ("number", [one.unit or "1" for one in free]),
+        "display": ("number", [one.display or one.unit or "1" for one in free]),
+        "meaning": ("number", [one.meaning for one in free]),
+    }  # fmt: skip
+
+
 def answer(
     misfit: AnyMisfit, best: Least, spread: Spread, ends: tuple[np.ndarray, np.ndarray], about: dict[str, Any]
 ) -> Fit:
@@ -220,34 +244,18 @@ def answer(
     import xarray as xr
 
     free, values = misfit.free, misfit.values(best.x)
-    names = [one.name for one in free]
-    slopes = np.array([one.slope(float(x)) for one, x in zip(free, best.x, strict=True)])
-    numbers = {
-        "value": values, "error": spread.errors * slopes, "low": misfit.values(ends[0]),
-        "high": misfit.values(ends[1]), "from": np.array([one.low for one in free]),
-        "to": np.array([one.high for one in free]), "start": np.array([one.start for one in free]),
-    }  # fmt: skip
     measured = misfit.measured
     points = {
         "length": measured.points[:, 0], "pressure": measured.points[:, 1], "force": measured.force,
         "predicted": misfit(best.x).force, "weight": measured.weights,
     }  # fmt: skip
-    variables: dict[str, Any] = {
-        name: ("number", column, {"long_name": NUMBERS[name]}) for name, column in numbers.items()
-    }
+    variables = of_numbers(misfit, best, spread, ends)
     variables |= {name: ("point", column, dict(zip(("units", "long_name"), POINTS[name], strict=True)))
                   for name, column in points.items()}  # fmt: skip
-    square = ("number", "other")
     priors = np.array([one.prior or (np.nan, np.nan) for one in free])
     variables |= {
         "prior": ("number", priors[:, 0], {"long_name": "mean of what was known beforehand, NaN where nothing was"}),
         "prior_error": ("number", priors[:, 1], {"long_name": "its standard deviation"}),
-        "correlation": (square, spread.correlation),
-        "covariance": (square, spread.covariance * np.outer(slopes, slopes)),
-        "undetermined": ("number", spread.undetermined),
-        "unit": ("number", [one.unit or "1" for one in free]),
-        "display": ("number", [one.display or one.unit or "1" for one in free]),
-        "meaning": ("number", [one.meaning for one in free]),
         "test": ("point", measured.tests), "branch": ("point", measured.branches), "path": ("point", measured.paths),
     }  # fmt: skip
     given, *_ = misfit.muscles
@@ -261,7 +269,7 @@ def answer(
         "muscle": to_toml(muscle, allow_custom=True), "given": to_toml(given, allow_custom=True),
         "mckibben_version": versions()["mckibben"],
     }  # fmt: skip
-    dataset = xr.Dataset(variables, {"number": names, "other": names}, attributes)
+    dataset = xr.Dataset(variables, attrs=attributes)
     for name in dataset.variables:
         dataset[name].values.flags.writeable = False
     return Fit(muscle, given, dataset, tuple(further))

@@ -12,7 +12,7 @@ from mckibben.fitting.answer import Fit, answer
 from mckibben.fitting.free import Free, free_numbers, is_turned, offsets_of
 from mckibben.fitting.misfit import Points
 from mckibben.fitting.notes import notes_on
-from mckibben.fitting.search import LOSSES, Least, candidates, cost_of, least
+from mckibben.fitting.search import Least, candidates, check_options, cost_of, least
 from mckibben.fitting.together import AnyMisfit, misfit_of, told_apart
 from mckibben.fitting.uncertain import intervals_of, spread_of
 from mckibben.spec import Muscle, SpecError
@@ -89,10 +89,7 @@ def fit(
     several = _several(data)
     muscles = _muscles(muscle, several)
     known = _known(force_error)
-    if loss not in LOSSES:
-        raise SpecError("loss", loss, "must be one of " + ", ".join(LOSSES), nearest(str(loss), LOSSES))
-    if not 0.5 <= level < 1.0:
-        raise SpecError("level", level, "must be at least 0.5 and below 1", "0.95 is usual")
+    check_options(loss, level)
     numbers = (*_shared(muscles, free, priors or {}), *offsets_of(offsets or {}))
     _check_contractions(several, numbers)
     misfit = misfit_of(muscles, numbers, _points(muscles, several, weights or {}), SIZES[0])

@@ -19,7 +19,17 @@ from mckibben.spec.plausible import trusted
 from mckibben.spec.vary import full_name
 from mckibben.units import DISPLAY, UnitError, show, to_si
 
-__all__ = ["OFFSETS", "Free", "free_numbers", "is_turned", "offsets_of", "put_in", "read_prior", "read_range"]
+__all__ = [
+    "OFFSETS",
+    "Free",
+    "OfFree",
+    "free_number",
+    "free_numbers",
+    "is_turned",
+    "offsets_of",
+    "put_in",
+    "read_range",
+]
 
 OFFSETS = {
     "length": ("m", "added to every measured length"),
@@ -72,6 +82,31 @@ class Free:
         return show(value, self.display or self.unit)
 
 
+class OfFree:
+    """What every misfit has of its free numbers."""
+
+    free: tuple[Free, ...]
+
+    @property
+    def start(self) -> np.ndarray:
+        """x of what was given."""
+        return np.array([one.x(one.start) for one in self.free])
+
+    def values(self, x: np.ndarray) -> np.ndarray:
+        """The numbers at x, SI."""
+        return np.array([one.value(float(at)) for one, at in zip(self.free, x, strict=True)])
+
+
+def free_number(name: str, given: Any, declared: Declared, number: float, priors: Mapping[str, Any]) -> Free:
+    """A declared number that is free in the range given, with what is known of it beforehand."""
+    low, high = read_range(f"free.{name}", given, declared)
+    one = Free(name, declared.unit, low, high, number, declared.meaning, declared.display)
+    if not low <= number <= high:
+        one = attrs.evolve(one, start=one.value(0.5))
+    prior = _prior(f"priors.{name}", priors[name], declared.unit) if name in priors else None
+    return attrs.evolve(one, prior=prior)
+
+
 def free_numbers(muscle: Muscle, free: Mapping[str, Any], priors: Mapping[str, Any]) -> tuple[Free, ...]:
     """What is free, from a mapping of names to ranges. SpecError for a name or range that cannot be."""
     if not isinstance(free, Mapping) or not free:
@@ -93,12 +128,7 @@ def free_numbers(muscle: Muscle, free: Mapping[str, Any], priors: Mapping[str, A
             number = from_parallels(number, muscle.braid.measured_from)
         if declared.kind == "count":
             raise SpecError(f"free.{name}", given, "is a whole number", "fit once for each, and compare the errors")
-        low, high = read_range(f"free.{name}", given, declared)
-        one = Free(name, declared.unit, low, high, float(number), declared.meaning, declared.display)
-        if not low <= one.start <= high:
-            one = attrs.evolve(one, start=one.value(0.5))
-        prior = read_prior(f"priors.{name}", told[name], declared.unit) if name in told else None
-        found.append(attrs.evolve(one, prior=prior))
+        found.append(free_number(name, given, declared, float(number), told))
     return tuple(found)
 
 
@@ -186,7 +216,7 @@ def read_range(field: str, given: Any, declared: Declared) -> tuple[float, float
     return bounds[0], bounds[1]
 
 
-def read_prior(field: str, given: Any, unit: str) -> tuple[float, float]:
+def _prior(field: str, given: Any, unit: str) -> tuple[float, float]:
     """Mean and standard deviation, from "0.3 MPa +- 0.1 MPa" or a pair."""
     pair = given.replace("±", "+-").split("+-") if isinstance(given, str) else given
     try:

@@ -16,7 +16,7 @@ import numpy as np
 
 from mckibben.data.values import Data
 from mckibben.fitting.forces import in_blocks
-from mckibben.fitting.free import Free, is_turned, put_in
+from mckibben.fitting.free import Free, OfFree, is_turned, put_in
 from mckibben.fitting.states import fitting_problem, ordered, seek
 from mckibben.measure.survey import errors
 from mckibben.model.extension import longest_of
@@ -26,7 +26,7 @@ from mckibben.solver.system import Unknowns
 from mckibben.spec import Muscle, SpecError
 from mckibben.spec.declared import evolved, numbers
 
-__all__ = ["Compared", "Misfit", "Points", "Seen"]
+__all__ = ["Compared", "Misfit", "OfOneMuscle", "Points", "Seen"]
 
 
 @attrs.frozen(eq=False)
@@ -104,8 +104,33 @@ class Compared(Protocol):
     def __call__(self, x: np.ndarray) -> Seen: ...
 
 
+class OfOneMuscle(OfFree):
+    """What every misfit of one muscle has."""
+
+    muscle: Muscle
+    measured: Points
+
+    @property
+    def muscles(self) -> tuple[Muscle, ...]:
+        """As given."""
+        return (self.muscle,)
+
+    @property
+    def of(self) -> np.ndarray:
+        """Which muscle each point is of."""
+        return np.zeros(len(self.measured.force), int)
+
+    def offset(self, values: np.ndarray, name: str) -> float:
+        """What an instrument is off by."""
+        return next((float(v) for one, v in zip(self.free, values, strict=True) if one.name == f"offset.{name}"), 0.0)
+
+    def shift(self, values: np.ndarray) -> np.ndarray:
+        """What is added to measured lengths [m] and pressures [Pa]."""
+        return np.array([self.offset(values, "length"), self.offset(values, "pressure")])
+
+
 @attrs.define(eq=False)
-class Misfit:
+class Misfit(OfOneMuscle):
     """The model at measured points, for a search; it remembers the last states, and nothing that changes an answer."""
 
     muscle: Muscle
@@ -124,32 +149,9 @@ class Misfit:
         self.places = tuple(leaves.index(one.name) for one in self.free if one.name in leaves)
 
     @property
-    def muscles(self) -> tuple[Muscle, ...]:
-        """As given."""
-        return (self.muscle,)
-
-    @property
-    def of(self) -> np.ndarray:
-        """Which muscle each point is of."""
-        return np.zeros(len(self.measured.force), int)
-
-    @property
     def turned(self) -> np.ndarray:
         """Which numbers are the complement of what the muscle keeps (k)."""
         return np.array([is_turned(self.muscle, one.name) for one in self.free])
-
-    @property
-    def start(self) -> np.ndarray:
-        """x of the muscle as given."""
-        return np.array([one.x(one.start) for one in self.free])
-
-    def values(self, x: np.ndarray) -> np.ndarray:
-        """The numbers at x, SI."""
-        return np.array([one.value(float(at)) for one, at in zip(self.free, x, strict=True)])
-
-    def offset(self, values: np.ndarray, name: str) -> float:
-        """What an instrument is off by."""
-        return next((float(v) for one, v in zip(self.free, values, strict=True) if one.name == f"offset.{name}"), 0.0)
 
     def place_anew(self, x: np.ndarray, size: int | None = None) -> Problem:
         """Place the points for the muscle at x, on more unknowns if a size is given, and seek its states thoroughly."""
@@ -195,8 +197,7 @@ class Misfit:
 
     def _at(self, x: np.ndarray) -> tuple[Muscle, np.ndarray]:
         values = self.values(x)
-        shift = np.array([self.offset(values, "length"), self.offset(values, "pressure")])
-        return put_in(self.muscle, self.free, values), self.measured.points + shift
+        return put_in(self.muscle, self.free, values), self.measured.points + self.shift(values)
 
     def _seen(self, x: np.ndarray) -> Seen:
         muscle, points = self._at(x)
@@ -227,11 +228,10 @@ class Misfit:
         values, points = self.values(x), self.measured.points[rows]
         n, problem = len(points), self.problem
         assert problem is not None
-        shift = [self.offset(values, "length"), self.offset(values, "pressure")]
         own, turned = values[: len(self.places)], self.turned[: len(self.places)]
         leaves = np.where(turned, np.pi / 2.0 - own, own)
         plain = evolved(self.muscle, name=None, assumed=())
-        free = np.concatenate([leaves, shift])
+        free = np.concatenate([leaves, self.shift(values)])
         found = in_blocks(problem.basis, self.places, problem.b, plain, free, points, near)
         force, by = found.force + self.offset(values, "force"), found.slopes
         signed = by[:, : len(own)] * np.where(turned, -1.0, 1.0)

@@ -18,7 +18,7 @@ from mckibben.discretise.placement import crowding
 from mckibben.experiments.rubbing import LARGEST, Going, step_to
 from mckibben.fitting.differences import by_differences
 from mckibben.fitting.free import Free, put_in
-from mckibben.fitting.misfit import Points, Seen
+from mckibben.fitting.misfit import OfOneMuscle, Points, Seen
 from mckibben.model.parameters import parameters
 from mckibben.solver.bench import NEARLY, Bench
 from mckibben.solver.held import Held
@@ -32,7 +32,7 @@ Shares = dict[int, list[tuple[float, ...]]]
 
 
 @attrs.define(eq=False)
-class PathMisfit:
+class PathMisfit(OfOneMuscle):
     """As `Misfit`, of a muscle with friction; points of no weight are on the path and are not compared."""
 
     muscle: Muscle
@@ -55,25 +55,6 @@ class PathMisfit:
             raise SpecError(
                 "data", allowed=said, advice='give points as they were measured, or muscle.replace("friction", None)'
             )
-
-    @property
-    def muscles(self) -> tuple[Muscle, ...]:
-        """As given."""
-        return (self.muscle,)
-
-    @property
-    def of(self) -> np.ndarray:
-        """Which muscle each point is of."""
-        return np.zeros(len(self.measured.force), int)
-
-    @property
-    def start(self) -> np.ndarray:
-        """x of the muscle as given."""
-        return np.array([one.x(one.start) for one in self.free])
-
-    def values(self, x: np.ndarray) -> np.ndarray:
-        """The numbers at x, SI."""
-        return np.array([one.value(float(at)) for one, at in zip(self.free, x, strict=True)])
 
     def place_anew(self, x: np.ndarray, size: int | None = None) -> None:
         """Place the points for the muscle at x, on more unknowns if a size is given, and seek its states anew."""
@@ -104,9 +85,8 @@ class PathMisfit:
     def _at(self, x: np.ndarray) -> tuple[Muscle, np.ndarray, float]:
         """The muscle, where its points are as the instruments have it, and what the load cell shows without load."""
         values = self.values(x)
-        off = dict(zip((one.name for one in self.free), values.tolist(), strict=True))
-        shift = np.array([off.get("offset.length", 0.0), off.get("offset.pressure", 0.0)])
-        return put_in(self.muscle, self.free, values), self.path.points + shift, off.get("offset.force", 0.0)
+        points = self.path.points + self.shift(values)
+        return put_in(self.muscle, self.free, values), points, self.offset(values, "force")
 
     def _measured_forces(self, x: np.ndarray) -> np.ndarray:
         try:

@@ -10,8 +10,9 @@ import attrs
 import numpy as np
 
 from mckibben.fitting.misfit import Compared
+from mckibben.spec.errors import SpecError, nearest
 
-__all__ = ["LOSSES", "Least", "candidates", "cost_of", "least", "residuals_of"]
+__all__ = ["LOSSES", "Least", "candidates", "check_options", "cost_of", "least", "residuals_of", "slopes_of"]
 
 LOSSES = ("linear", "soft_l1", "huber", "cauchy")
 """How large differences count: squared, or less than that."""
@@ -30,6 +31,14 @@ class Least:
     evaluations: int
     message: str
     converged: bool
+
+
+def check_options(loss: str, level: float) -> None:
+    """SpecError for a loss that is not known, or a level of intervals out of range."""
+    if loss not in LOSSES:
+        raise SpecError("loss", loss, "must be one of " + ", ".join(LOSSES), nearest(str(loss), LOSSES))
+    if not 0.5 <= level < 1.0:
+        raise SpecError("level", level, "must be at least 0.5 and below 1", "0.95 is usual")
 
 
 def residuals_of(misfit: Compared, x: np.ndarray, sigma: float) -> np.ndarray:

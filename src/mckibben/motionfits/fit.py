@@ -5,18 +5,17 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import Any
 
-import attrs
 import numpy as np
 
 from mckibben.data.recording import OVER_TIME, Recording
-from mckibben.fitting.free import Free, read_prior, read_range
+from mckibben.fitting.answer import of_numbers
+from mckibben.fitting.free import Free, free_number
 from mckibben.fitting.notes import notes_of
-from mckibben.fitting.search import LOSSES, Least, candidates, cost_of, least
+from mckibben.fitting.search import Least, candidates, check_options, cost_of, least
 from mckibben.fitting.uncertain import Spread, intervals_of, spread_of
 from mckibben.measure.report import versions
 from mckibben.motion.maps import maps_of
 from mckibben.motionfits.misfit import MotionMisfit
-from mckibben.results.found import NUMBERS
 from mckibben.results.motionfit import MOMENTS, MotionFit
 from mckibben.spec.declared import numbers
 from mckibben.spec.errors import SpecError, nearest
@@ -92,10 +91,7 @@ def fit_motion(
         raise SpecError("rig", rig, "must be a Rig", "such as mk.Rig(muscle=..., load=..., supply=..., valve=...)")
     if not isinstance(recording, Recording):
         raise SpecError("recording", allowed="must be what read_recording gave", advice='mk.read_recording("run.csv")')
-    if loss not in LOSSES:
-        raise SpecError("loss", loss, "must be one of " + ", ".join(LOSSES), nearest(str(loss), LOSSES))
-    if not 0.5 <= level < 1.0:
-        raise SpecError("level", level, "must be at least 0.5 and below 1", "0.95 is usual")
+    check_options(loss, level)
     if "angle" in recording.values and not rig.turns:
         raise SpecError("recording", allowed="has an angle, and this rig has no pulley")
     known = _sizes(errors or {}, recording)
@@ -129,13 +125,7 @@ def free_of_rig(rig: Rig, free: Mapping[str, Any], priors: Mapping[str, Any]) ->
         if name not in known:
             options = [one for one in known if not one.startswith(("muscle.", "antagonist."))]
             raise SpecError(f"free.{name}", allowed="is no number of this rig", advice=nearest(str(name), options))
-        declared, number = known[name]
-        low, high = read_range(f"free.{name}", given, declared)
-        one = Free(name, declared.unit, low, high, number, declared.meaning, declared.display)
-        if not low <= number <= high:
-            one = attrs.evolve(one, start=one.value(0.5))
-        prior = read_prior(f"priors.{name}", priors[name], declared.unit) if name in priors else None
-        found.append(attrs.evolve(one, prior=prior))
+        found.append(free_number(name, given, *known[name], priors))
     return tuple(found)
 
 
@@ -188,15 +178,8 @@ def _answer(
 ) -> MotionFit:
     import xarray as xr
 
-    free, values, recording = misfit.free, misfit.values(best.x), misfit.recording
-    names = [one.name for one in free]
-    slopes = np.array([one.slope(float(x)) for one, x in zip(free, best.x, strict=True)])
-    of_numbers = {
-        "value": values, "error": spread.errors * slopes, "low": misfit.values(ends[0]), "high": misfit.values(ends[1]),
-        "from": np.array([one.low for one in free]), "to": np.array([one.high for one in free]),
-        "start": np.array([one.start for one in free]),
-    }  # fmt: skip
-    predicted, count, square = misfit.moved(best.x), len(recording), ("number", "other")
+    recording = misfit.recording
+    predicted, count = misfit.moved(best.x), len(recording)
     size = np.repeat([misfit.sizes[name] for name in recording.values], count)
     of_points = {
         "time": np.tile(recording.time, len(recording.values)),
@@ -204,20 +187,10 @@ def _answer(
         "predicted": predicted,
         "size": size,
     }
-    variables: dict[str, Any] = {
-        name: ("number", column, {"long_name": NUMBERS[name]}) for name, column in of_numbers.items()
-    }
+    variables = of_numbers(misfit, best, spread, ends)
     variables |= {name: ("point", column, {"long_name": MOMENTS[name]}) for name, column in of_points.items()}
-    variables |= {
-        "correlation": (square, spread.correlation),
-        "covariance": (square, spread.covariance * np.outer(slopes, slopes)),
-        "undetermined": ("number", spread.undetermined),
-        "unit": ("number", [one.unit or "1" for one in free]),
-        "display": ("number", [one.display or one.unit or "1" for one in free]),
-        "meaning": ("number", [one.meaning for one in free]),
-        "quantity": ("point", np.repeat(list(recording.values), count)),
-    }  # fmt: skip
-    notes = [*notes_of(free, best, spread), *recording.assumptions]
+    variables["quantity"] = ("point", np.repeat(list(recording.values), count))
+    notes = [*notes_of(misfit.free, best, spread), *recording.assumptions]
     if not misfit.inside:
         notes.append("the motion leaves the range of its map: give a chart that reaches further")
     rig = misfit.rig_at(best.x)
@@ -226,7 +199,7 @@ def _answer(
         "converged": int(best.converged), "message": best.message, "tried": misfit.tried,
         "mckibben_version": versions()["mckibben"],
     }  # fmt: skip
-    dataset = xr.Dataset(variables, {"number": names, "other": names}, about)
+    dataset = xr.Dataset(variables, attrs=about)
     for name in dataset.variables:
         dataset[name].values.flags.writeable = False
     return MotionFit(rig, misfit.rig, dataset)

@@ -9,7 +9,7 @@ import numpy as np
 
 from mckibben.data.recording import Recording
 from mckibben.fitting.differences import by_differences
-from mckibben.fitting.free import Free
+from mckibben.fitting.free import Free, OfFree
 from mckibben.fitting.misfit import Seen
 from mckibben.motion.commands import Commands
 from mckibben.motion.drive import drive
@@ -33,7 +33,7 @@ class Sized:
 
 
 @attrs.define(eq=False)
-class MotionMisfit:
+class MotionMisfit(OfFree):
     """A rig against a recording, for a search."""
 
     rig: Rig
@@ -51,15 +51,6 @@ class MotionMisfit:
         """Measured values over their sizes."""
         force = np.concatenate([values / self.sizes[name] for name, values in self.recording.values.items()])
         return Sized(force, np.ones(len(force)))
-
-    @property
-    def start(self) -> np.ndarray:
-        """x of the rig as given."""
-        return np.array([one.x(one.start) for one in self.free])
-
-    def values(self, x: np.ndarray) -> np.ndarray:
-        """The numbers at x, SI."""
-        return np.array([one.value(float(at)) for one, at in zip(self.free, x, strict=True)])
 
     def rig_at(self, x: np.ndarray) -> Rig:
         """The rig with the numbers at x."""
