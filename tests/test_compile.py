@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 import mckibben as mk
-from mckibben.discretise.placement import crowdings
+from mckibben.discretise.placement import crowdings_at
 from mckibben.measure.read import read_many
 from mckibben.measure.survey import survey
 from mckibben.model.cylinder import cylinder_force
@@ -22,7 +22,7 @@ from mckibben.solver.problem import balance, curvature, setting
 
 pytestmark = pytest.mark.compiled
 
-COMPILED = (setting, balance, curvature, follow, read_many, crowdings)
+COMPILED = (setting, balance, curvature, follow, read_many, crowdings_at)
 REFERENCE = mk.presets.reference()
 SIZE, OWN = 24, 7
 """Unknowns: the usual number, and one of these tests' own that no other test has compiled before."""
@@ -72,7 +72,7 @@ def test_a_choice_compiles_anew(choice: str, caplog: pytest.LogCaptureFixture) -
     with jax.log_compiles(), caplog.at_level(logging.WARNING):
         assert find(bench.problem(OWN, bench.placement(held)), held).converged
     grown = {function for function, a, b in zip(COMPILED, before, counts(), strict=True) if b > a}
-    assert grown == {setting, balance, curvature, crowdings} - ({crowdings} if choice == "ends" else set())
+    assert grown == {setting, balance, curvature, crowdings_at} - ({crowdings_at} if choice == "ends" else set())
     assert any("curvature" in message for message in caplog.messages)
 
 

@@ -66,7 +66,7 @@ def test_a_second_process_compiles_nothing(tmp_path: Path) -> None:
     files = sorted(tmp_path.iterdir(), key=lambda file: file.stat().st_size)
     assert {file.suffix for file in files} == {SUFFIX}  # nothing half-written
     names = {file.name.partition("-")[0] for file in files}
-    assert names == {"crowdings", "setting", "follow", "balance", "read_many"}  # nothing of the search, the dearest
+    assert names == {"crowdings_at", "setting", "follow", "balance", "read_many"}  # nothing of the search, the dearest
     contents = [file.read_bytes() for file in files[:4]]
     short, changed, _, other = contents
     damaged = (short[:-1], changed[:999] + bytes([changed[999] ^ 1]) + changed[1000:], b"", other[::-1])

@@ -15,7 +15,7 @@ from mckibben.model.parameters import Parameters
 from mckibben.model.point import Point
 from mckibben.model.profile import evened
 
-__all__ = ["crowding", "crowdings"]
+__all__ = ["crowding", "crowdings", "crowdings_at"]
 
 UNIFORM = 0.5
 """Least crowding: points nearly uniform along the length."""
@@ -26,24 +26,43 @@ STEEPEST = 8.0
 @partial(kernel, static_argnums=())
 def crowdings(p: Parameters, length: Array, force: Array, pressure: Array) -> Float[Array, " n"]:
     """b for each of n states of given length, or of given force where the length is NaN."""
-    p = evened(p)
-    angles = jnp.linspace(jnp.deg2rad(3.0), jnp.deg2rad(88.0), 341)
+    p, angles = evened(p), _angles()
 
     def one(length: Array, force: Array, pressure: Array) -> Array:
         forces = jax.vmap(lambda theta: cylinder_force(theta, pressure, p))(angles)
         by_length = jnp.abs(cylinder_length(angles, p) - length)
         by_force = jnp.abs(forces - force)
         best = jnp.argmin(jnp.where(jnp.isnan(length), by_force, by_length))
-        theta = angles[best]
-        pull = jnp.where(jnp.isnan(force), forces[best], force)
-        layer = end_layer(theta, pull + jnp.pi * radius(Point.cylinder(theta), p) ** 2 * pressure, p)
-        return jnp.clip(0.5 * jnp.log(p.H0 / (3.0 * layer)), UNIFORM, STEEPEST)
+        return _crowding(angles[best], jnp.where(jnp.isnan(force), forces[best], force), pressure, p)
 
     return jax.vmap(one)(length, force, pressure)
+
+
+@partial(kernel, static_argnums=())
+def crowdings_at(p: Parameters, length: Array, pressure: Array) -> Float[Array, " n"]:
+    """That of `crowdings` for n states of given length, without the force at every angle."""
+    p, angles = evened(p), _angles()
+
+    def one(length: Array, pressure: Array) -> Array:
+        theta = angles[jnp.argmin(jnp.abs(cylinder_length(angles, p) - length))]
+        return _crowding(theta, cylinder_force(theta, pressure, p), pressure, p)
+
+    return jax.vmap(one)(length, pressure)
+
+
+def _angles() -> Array:
+    return jnp.linspace(jnp.deg2rad(3.0), jnp.deg2rad(88.0), 341)
+
+
+def _crowding(theta: Array, pull: Array, pressure: Array, p: Parameters) -> Array:
+    layer = end_layer(theta, pull + jnp.pi * radius(Point.cylinder(theta), p) ** 2 * pressure, p)
+    return jnp.clip(0.5 * jnp.log(p.H0 / (3.0 * layer)), UNIFORM, STEEPEST)
 
 
 def crowding(p: Parameters, length: np.ndarray, force: np.ndarray, pressure: np.ndarray) -> float:
     """Crowding b of points that serves all the given states (NaN where length or force is not held)."""
     size = max(4, 1 << int(len(length) - 1).bit_length())
-    padded = (np.concatenate([a, np.repeat(a[-1:], size - len(a))]) for a in (length, force, pressure))
-    return float(np.max(np.asarray(crowdings(p, *padded))))
+    length, force, pressure = (np.concatenate([a, np.repeat(a[-1:], size - len(a))]) for a in (length, force, pressure))
+    held = not np.isnan(length).any() and np.isnan(force).all()
+    found = crowdings_at(p, length, pressure) if held else crowdings(p, length, force, pressure)
+    return float(np.max(np.asarray(found)))

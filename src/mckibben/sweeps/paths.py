@@ -10,7 +10,7 @@ import numpy as np
 
 from mckibben.compiled.kernel import kernel
 from mckibben.discretise.fields import Placed, place
-from mckibben.discretise.placement import crowdings
+from mckibben.discretise.placement import crowdings, crowdings_at
 from mckibben.discretise.spectral import Line
 from mckibben.measure.many import polished
 from mckibben.model.parameters import Parameters
@@ -168,13 +168,20 @@ def _on(group: Group, b: np.ndarray, line: Line) -> Placed:
 def _placement(group: Group) -> np.ndarray:
     """Crowding of points for each design, as a single run places them."""
     rows = _filled(group.corners, MOST)
-    found = np.asarray(_crowded(_stacked(group, MOST), *np.moveaxis(rows, 2, 0)))
+    length, force, pressure = np.moveaxis(rows, 2, 0)
+    p, held = _stacked(group, MOST), group.held[0] == "length"
+    found = np.asarray(_crowded_at(p, length, pressure) if held else _crowded(p, length, force, pressure))
     return np.asarray(found.max(axis=1)[: len(group)])
 
 
 @partial(kernel, static_argnums=())
 def _crowded(p: Parameters, length: Any, force: Any, pressure: Any) -> Any:
     return jax.vmap(crowdings)(p, length, force, pressure)
+
+
+@partial(kernel, static_argnums=())
+def _crowded_at(p: Parameters, length: Any, pressure: Any) -> Any:
+    return jax.vmap(crowdings_at)(p, length, pressure)
 
 
 @kernel
