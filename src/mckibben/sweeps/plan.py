@@ -6,6 +6,7 @@ import hashlib
 import json
 import math
 from collections.abc import Mapping
+from functools import cache
 from importlib.metadata import version
 from typing import Any
 
@@ -151,6 +152,7 @@ class Plan:
         }
 
 
+@cache
 def versions() -> dict[str, str]:
     """Versions of what makes the numbers, on this machine."""
     return {name: version(name) for name in MADE_BY}
