@@ -12,10 +12,10 @@ from mckibben.compiled.kernel import kernel
 from mckibben.compiled.rows import filled
 from mckibben.discretise.fields import Placed
 from mckibben.measure.kink import Missed
-from mckibben.measure.read import read, stable, with_kinks
+from mckibben.measure.read import Reading, read, stable, with_kinks
 from mckibben.solver.batch import moved, newton
 from mckibben.solver.problem import Basis
-from mckibben.solver.system import Unknowns, assemble, localise, residual
+from mckibben.solver.system import Local, Unknowns, assemble, localise, residual
 
 __all__ = ["Appraised", "Polished", "appraised", "polished"]
 
@@ -31,27 +31,27 @@ class Appraised(NamedTuple):
     missed: Missed | None  #: what kinks of a chamber with a gap add to the error
 
 
-def appraise(basis: Basis, on: Placed, state: Unknowns) -> Appraised:
-    """A state, as it is."""
-    local = localise(basis, on, state)
-    s = assemble(basis, on, local, len(state.loads), together=True)
-    under = stable(basis, on, local, s, jnp.array(False), together=True)
-    seen = with_kinks(read(basis, on, state), basis, on, state, s)
-    numbers = seen.numbers | {
-        "peak_fibre_tension": seen.fields["fibre_tension"].max(), "largest_radius": seen.fields["r"].max(),
-        "residual": residual(s, state.loads), "conserved_variation": seen.conserved_variation,
-        "coefficient_tail": seen.coefficient_tail,
-    }  # fmt: skip
-    return Appraised(numbers, seen.largest_slope, *under, seen.missed)
-
-
 @kernel
 def appraised(basis: Basis, on: Placed, states: Unknowns, count: Int[Array, ""]) -> Appraised:
-    """The first `count` states (n, batch, ...) of every muscle; leaves lead with (n, batch) and are zero beyond."""
+    """The first `count` states (n, batch, ...) of every muscle, as they are; leaves lead with (n, batch), and are zero
+    beyond."""
+
+    def one(on: Placed, state: Unknowns) -> tuple[Reading, Array, Local]:
+        local = localise(basis, on, state)
+        s = assemble(basis, on, local, len(state.loads), together=True)
+        seen = with_kinks(read(basis, on, state), basis, on, state, s)
+        return seen, residual(s, state.loads), local
 
     def at(k: Array) -> Appraised:
         some = jax.tree.map(lambda rows: rows[k], states)
-        return jax.tree.map(lambda row: row[None], jax.vmap(partial(appraise, basis))(on, some))
+        seen, off, local = jax.vmap(one)(on, some)
+        under = stable(basis, on, local, some.loads.shape[1], jnp.array(False), each=0, together=True)
+        numbers = seen.numbers | {
+            "peak_fibre_tension": seen.fields["fibre_tension"].max(axis=1),
+            "largest_radius": seen.fields["r"].max(axis=1),
+            "residual": off, "conserved_variation": seen.conserved_variation, "coefficient_tail": seen.coefficient_tail,
+        }  # fmt: skip
+        return jax.tree.map(lambda row: row[None], Appraised(numbers, seen.largest_slope, *under, seen.missed))
 
     return filled(at, count, len(states.u))
 

@@ -5,11 +5,11 @@ verdicts all use it, mapped and compiled; a compiler leaves out what is not aske
 its length and mirrored.
 """
 
+from functools import partial
 from typing import Any, NamedTuple
 
 import jax
 import jax.numpy as jnp
-import numpy as np
 from jaxtyping import Bool, Float, Int
 
 from mckibben.compiled.arrays import Array
@@ -31,7 +31,7 @@ from mckibben.model.wall import chamber_density, chamber_pull, chamber_stretches
 from mckibben.solver.newton import batch_size, positive
 from mckibben.solver.problem import Basis
 from mckibben.solver.stability import stiffnesses
-from mckibben.solver.system import Local, System, Unknowns, assemble, localise, residual
+from mckibben.solver.system import Local, System, Unknowns, assemble, convex, localise, residual
 
 __all__ = [
     "ENERGIES",
@@ -96,8 +96,10 @@ def read(basis: Basis, on: Placed, state: Unknowns, kept: Any = None) -> Reading
     everywhere = jax.vmap(lambda at, c, kept: _fields(at, c, F, P, p, kept))(points, pulls, memories)
     found = {name: values[q:] for name, values in everywhere.items()}
     found["z"] = sampling.integral @ (on.jacobian * rate)
-    checked = np.append(np.arange(q), q if basis.half else [q, -1])  # the mesh and the fittings
-    at, along = jax.tree.map(lambda rows: rows[checked], (points, pulls))
+    ends = () if basis.half else (slice(-1, None),)
+    at, along = jax.tree.map(  # on the mesh and the fittings; slices, since picking rows one by one is slow
+        lambda rows: jnp.concatenate([rows[: q + 1], *(rows[end] for end in ends)]), (points, pulls)
+    )
     conserves = memory is None and on.made is None  # neither what a path leaves nor what varies along the length does
     variation = _variation(on, at, along, F, P, weights) if conserves else jnp.asarray(jnp.nan)
     extremes = jnp.stack([everywhere[name][:q] for name in ("fibre_tension", "r")])
@@ -227,14 +229,34 @@ class Stable(NamedTuple):
     antisymmetric: Bool[Array, ""]
 
 
-def stable(basis: Basis, on: Placed, local: Local, s: System, volume: Array, together: bool = False) -> Stable:
-    """Stability of a state under length and force control, with the pressure held, or the `volume`."""
-    t = stiffnesses(basis, on, local, s, together)
-    always = [jnp.where(volume, t.gradients[1], 0.0), *t.gradients[2:]]
-    force = positive(t.stiffness, jnp.stack(always))
-    length = positive(t.stiffness, jnp.stack([t.gradients[0], *always]))
-    sideways = positive(t.antisymmetric, t.closure) if basis.half else jnp.array(True)
-    return Stable(length, force, sideways)
+def stable(
+    basis: Basis,
+    on: Placed,
+    local: Local,
+    loads: int,
+    volume: Array,
+    each: int | None = None,
+    together: bool = False,
+) -> Stable:
+    """Stability of n states with so many loads, under length and force control, with the pressure held or the `volume`.
+
+    `on` is one muscle, or with each=0 n of them. A state that is convex is stable in every way; where all are no more
+    is asked.
+    """
+
+    def counted(on: Placed, local: Local) -> Stable:
+        t = stiffnesses(basis, on, local, assemble(basis, on, local, loads, together), together)
+        always = [jnp.where(volume, t.gradients[1], 0.0), *t.gradients[2:]]
+        force = positive(t.stiffness, jnp.stack(always))
+        length = positive(t.stiffness, jnp.stack([t.gradients[0], *always]))
+        sideways = positive(t.antisymmetric, t.closure) if basis.half else jnp.array(True)
+        return Stable(length, force, sideways)
+
+    sure = jax.vmap(partial(convex, basis))(local)
+    found: Stable = jax.lax.cond(
+        sure.all(), lambda: Stable(sure, sure, sure), lambda: jax.vmap(counted, (each, 0))(on, local)
+    )
+    return found
 
 
 AT_ONCE = 8
@@ -257,24 +279,25 @@ def read_many(
 
     n is 1 or a multiple of `AT_ONCE`.
     """
-    on, n = place(basis, p, b), len(states.u)
+    on, n, loads = place(basis, p, b), len(states.u), states.loads.shape[1]
     size = min(n, AT_ONCE, batch_size(basis.unknowns))
 
-    def one(state: Unknowns, kept: Any) -> tuple[Reading, Stable, Array]:
+    def one(state: Unknowns, kept: Any) -> tuple[Reading, Array, Local]:
         local = localise(basis, on, state)
         s = assemble(basis, on, local, len(state.loads))
         seen = with_kinks(read(basis, on, state, kept), basis, on, state, s)
-        return seen, stable(basis, on, local, s, volume), residual(s, state.loads)
+        return seen, residual(s, state.loads), local
 
-    def some(k: Array) -> Any:
+    def some(k: Array) -> tuple[Reading, Stable, Array]:
         rows = jax.tree.map(lambda rows: jax.lax.dynamic_slice_in_dim(rows, k * size, size), (states, kept))
-        return jax.vmap(one)(*rows)
+        seen, off, local = jax.vmap(one)(*rows)
+        return seen, stable(basis, on, local, loads, volume), off
 
     found: tuple[Reading, Stable, Array]
     if n == 1:  # without the loop and the mapping it is compiled in two thirds of the time
-        found = jax.tree.map(
-            lambda value: jnp.asarray(value)[None], one(*jax.tree.map(lambda row: row[0], (states, kept)))
-        )
+        alone = one(*jax.tree.map(lambda row: row[0], (states, kept)))
+        seen, off, local = jax.tree.map(lambda value: jnp.asarray(value)[None], alone)
+        found = seen, stable(basis, on, local, loads, volume), off
     else:
         found = filled(some, (count + size - 1) // size, n)
     return found

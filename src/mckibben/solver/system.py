@@ -15,7 +15,7 @@ from typing import Any, NamedTuple
 
 import jax
 import jax.numpy as jnp
-from jaxtyping import Float
+from jaxtyping import Bool, Float
 
 from mckibben.compiled.arrays import Array
 from mckibben.discretise.fields import Integral, Placed, Variables, known, variables
@@ -32,6 +32,7 @@ __all__ = [
     "Unknowns",
     "assemble",
     "closing",
+    "convex",
     "localise",
     "remembered",
     "residual",
@@ -42,6 +43,8 @@ __all__ = [
 
 FEW = 4
 """Local variables by which derivatives are taken one by one."""
+PIVOT = 1e-6
+"""What must be left of a second derivative, over itself, when the variables before it have adjusted."""
 
 
 class Unknowns(NamedTuple):
@@ -208,12 +211,7 @@ def _gradient(basis: Any, on: Placed, local: Local, first: tuple[Array, ...]) ->
 def stiffness(basis: Any, on: Placed, local: Local, together: bool = False) -> Float[Array, "m m"]:
     """Second derivatives of the Lagrangian by the unknowns of a space, which need not be that of the state."""
     operators, form, n = basis.operators(), basis.form, len(basis.form.integrals)
-    costates, _ = _costates(basis, local, local.first)
-    second = {(i, i + k): f for i, row in enumerate(local.second) for k, f in enumerate(row)}
-    for one, bends, costate in zip(form.integrals, local.bends, costates, strict=True):
-        for a, i in enumerate(one.by):
-            for b, j in enumerate(one.by[a:]):
-                second[i, j] = second[i, j] + bends[a][b] * costate
+    second = _second(basis, local)
     scaled = [on.jacobian**-order if order else None for order in form.orders]
 
     def over(number: Array, k: int) -> Array:
@@ -232,6 +230,31 @@ def stiffness(basis: Any, on: Placed, local: Local, together: bool = False) -> F
     mixed = sum(coupled[1:], coupled[0])
     squares = [over(over(second[n + i, n + j], i), j) for i, j in pairs(len(form.orders))]
     return sandwich(basis, squares, together) + mixed + mixed.T
+
+
+def _second(basis: Any, local: Local) -> dict[tuple[int, int], Array]:
+    """Second derivatives of the Lagrangian at the points by variables i <= j, and of the rates times costates."""
+    costates, _ = _costates(basis, local, local.first)
+    second = {(i, i + k): f for i, row in enumerate(local.second) for k, f in enumerate(row)}
+    for one, bends, costate in zip(basis.form.integrals, local.bends, costates, strict=True):
+        for a, i in enumerate(one.by):
+            for b, j in enumerate(one.by[a:]):
+                second[i, j] = second[i, j] + bends[a][b] * costate
+    return second
+
+
+def convex(basis: Any, local: Local) -> Bool[Array, ""]:
+    """Whether the second derivatives of the Lagrangian are positive definite at every point.
+
+    Then so is the stiffness on every space of those points, whatever is held; where not, it may be so all the same.
+    """
+    left, good = _second(basis, local), jnp.array(True)
+    size = {i: value for (i, j), value in left.items() if i == j}
+    for k in size:
+        good = good & (left[k, k] > PIVOT * size[k]).all() & (size[k] > 0.0).all()
+        for i, j in ((i, j) for i, j in left if i > k):
+            left[i, j] = left[i, j] - left[k, i] * left[k, j] / left[k, k]
+    return good
 
 
 def closing(basis: Any, on: Placed, local: Local) -> Float[Array, "c a"]:
