@@ -1,13 +1,20 @@
 """Measured data as laboratories write them: what is in the file is what is read, and nothing is guessed in silence."""
 
 import contextlib
+import hashlib
 import io
 import json
+import re
+import sys
+import threading
 import zipfile
+from collections.abc import Iterator
+from http.server import BaseHTTPRequestHandler, ThreadingHTTPServer
 from pathlib import Path
 from typing import Any
 from xml.sax.saxutils import escape
 
+import attrs
 import numpy as np
 import pandas as pd
 import pytest
@@ -15,6 +22,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 import mckibben as mk
+from mckibben.data import samples
 from mckibben.data.branches import loading
 from mckibben.data.compare import compare, difference
 from mckibben.data.heads import read_head
@@ -670,19 +678,84 @@ def test_data_that_are_shared_are_read() -> None:
 
 
 def test_a_sample_is_read_from_a_folder(tmp_path: Path) -> None:
-    with pytest.raises(mk.SpecError, match=r"quadsegrity: its files .* are not part of this package; get them from"):
-        mk.sample_data("quadsegrity")
     with pytest.raises(mk.SpecError, match="is no known set"):
         mk.sample_data("festo")
-    with pytest.raises(mk.SpecError, match=r"holds none of 3 bars\.csv"):
+    with pytest.raises(mk.SpecError, match=r"its files .* are not in .*; fetch them with download=True, or get them"):
         mk.sample_data("quadsegrity", tmp_path)
-    rows = "".join(f'"{0.1 * k:.5f}","{k:.5f}","{2 * k:.5f}"\n' for k in range(5))
     for name in ("3 bars.csv", "6 bars.csv"):
-        written(tmp_path, "Time,Extension,Load\n(s),(mm),(N)\n" + rows, name)
+        written(tmp_path, PULLED, name)
     data = mk.sample_data("quadsegrity", folder=tmp_path)
     assert data.tests == ("3 bars", "6 bars")
     np.testing.assert_allclose(data["6 bars"].length, [0.624, 0.625, 0.626, 0.627, 0.628])
     assert "MIT" in data.assumptions[0]
+
+
+PULLED = "Time,Extension,Load\n(s),(mm),(N)\n" + "".join(f'"{0.1 * k:.5f}","{k:.5f}","{2 * k:.5f}"\n' for k in range(5))
+
+
+@pytest.fixture
+def published(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> Iterator[list[str]]:
+    """The files at addresses of this machine, in place of their authors'; what was asked for."""
+    asked = []
+
+    class Handler(BaseHTTPRequestHandler):
+        def do_GET(self) -> None:
+            asked.append(self.path)
+            self.send_response(200)
+            self.end_headers()
+            self.wfile.write(PULLED.encode())
+
+        def log_message(self, *_: object) -> None:
+            pass
+
+    server = ThreadingHTTPServer(("127.0.0.1", 0), Handler)
+    thread = threading.Thread(target=server.serve_forever)
+    thread.start()
+    sample = attrs.evolve(samples.SAMPLES["quadsegrity"], root=f"http://127.0.0.1:{server.server_port}/at")
+    monkeypatch.setitem(samples.SAMPLES, "quadsegrity", sample)
+    monkeypatch.setattr(samples, "place_of", lambda name: tmp_path / name)
+    yield asked
+    server.shutdown()
+    server.server_close()
+    thread.join()
+
+
+def test_a_sample_is_fetched_once(published: list[str], tmp_path: Path) -> None:
+    """Each file from a commit; from then on it is what it was, and no connection is needed."""
+    pytest.importorskip("pooch")
+    data = mk.sample_data("quadsegrity", download=True)
+    assert data.tests == ("3 bars", "4 bars", "5 bars", "6 bars")
+    assert len(published) == 4
+    address = r"/at/[0-9a-f]{40}/[eE]xperiences/session1/McKibbenBig/\d%20bars\.csv"
+    assert all(re.fullmatch(address, asked) for asked in published)
+    again = mk.sample_data("quadsegrity", download=True), mk.sample_data("quadsegrity")
+    assert len(published) == 4
+    assert [one.tests for one in again] == [data.tests] * 2
+    folder = tmp_path / "quadsegrity"
+    known = (folder / "checksums.txt").read_text(encoding="utf-8").splitlines()
+    assert known[0] == f"{hashlib.sha256(PULLED.encode()).hexdigest()}  3 bars.csv"
+    (folder / "3 bars.csv").write_text(PULLED.replace("2.0", "9.0"), encoding="utf-8")
+    with pytest.raises(mk.SpecError, match=r"3 bars\.csv: in .* is not the file that was fetched.*; delete it"):
+        mk.sample_data("quadsegrity")
+    (folder / "3 bars.csv").unlink()
+    assert mk.sample_data("quadsegrity", download=True).tests == data.tests
+    assert len(published) == 5
+    (folder / "4 bars.csv").unlink()
+    (folder / "checksums.txt").write_text("\n".join([known[0], "0" * 64 + known[1][64:]]), encoding="utf-8")
+    with pytest.raises(mk.SpecError, match=r"4 bars\.csv: at http.* is no longer what it was"):
+        mk.sample_data("quadsegrity", download=True)
+    assert not (folder / "4 bars.csv").exists()
+
+
+def test_a_sample_without_a_connection(published: list[str], tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    pytest.importorskip("pooch")
+    nowhere = attrs.evolve(samples.SAMPLES["quadsegrity"], root="http://127.0.0.1:9/at")
+    monkeypatch.setitem(samples.SAMPLES, "quadsegrity", nowhere)
+    with pytest.raises(mk.SpecError, match=r"cannot be fetched from http.*; go online, or give the folder= that holds"):
+        mk.sample_data("quadsegrity", download=True)
+    monkeypatch.setitem(sys.modules, "pooch", None)
+    with pytest.raises(mk.SpecError, match=r"takes pooch; pip install \"mckibben\[lab\]\", or give"):
+        mk.sample_data("quadsegrity", download=True)
 
 
 def invoke(*words: object) -> Any:
