@@ -5,6 +5,8 @@ Most muscles here are maps in closed form: a vessel of constant volume beside a 
 
 import json
 import math
+import subprocess
+import sys
 from collections.abc import Callable
 from pathlib import Path
 from typing import NamedTuple
@@ -408,6 +410,39 @@ def test_many_are_as_each_by_itself() -> None:
     wrong = [*rigs, attrs.evolve(HELD, command=mk.Series([0, 0.05], [0, 1]))]
     with pytest.raises(mk.SpecError, match=r"rigs\[2\]: rig.command: ends at 0.05 s"):
         mk.simulate_many(wrong, until="0.1 s", chart=Vessel(), workers=1)
+
+
+SCRIPT = """
+import attrs, mckibben as mk
+from mckibben.potential.evaluate import Values
+
+@attrs.frozen
+class Vessel:
+    pressures = (-5e4, 2e6)
+    def lengths(self, pressure):
+        return 0.05, 0.15
+    def at(self, h, P):
+        return Values(0.0, 5e-5, 0.0, 0.0, 0.0, -P * 5e-5, True)
+    def air_volume(self, h, P):
+        return 5e-5
+
+def half(time, sensed):
+    return 0.5
+
+print("begun")
+parts = dict(muscle=mk.presets.paper(), load=mk.FixedEnd(length="100 mm"), supply=mk.Supply(gauge="2 bar"))
+rigs = [mk.Rig(valve=mk.Valve(C=C, b=0.3), command=mk.Controller(half, "10 ms"), **parts) for C in (1e-10, 2e-10)]
+apart, here = (mk.simulate_many(rigs, until="0.1 s", chart=Vessel(), points=11, workers=n) for n in (2, 1))
+print("same", apart == here)
+"""
+
+
+def test_processes_do_not_run_the_script_again(tmp_path: Path) -> None:
+    """One without the usual guard, whose controller and map are its own."""
+    (tmp_path / "script.py").write_text(SCRIPT, encoding="utf-8")
+    done = subprocess.run([sys.executable, "script.py"], capture_output=True, text=True, cwd=tmp_path)
+    assert done.returncode == 0, done.stderr
+    assert done.stdout.split("\n") == ["begun", "same True", ""]
 
 
 SIGNALS = {

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import pickle
 from collections.abc import Callable, Iterable, Sequence
 from concurrent.futures import ProcessPoolExecutor
 from functools import partial
@@ -18,6 +19,7 @@ from mckibben.motion.maps import maps_of
 from mckibben.motion.plant import Plant
 from mckibben.motion.record import recorded
 from mckibben.motion.start import at_rest
+from mckibben.processes import main_left_out
 from mckibben.results.motion import Motion
 from mckibben.spec.errors import SpecError, nearest
 from mckibben.spec.rig import Rig
@@ -98,8 +100,8 @@ def simulate_many(
         points: times in each answer.
         tolerance: relative error of a step.
         method: SciPy's solver.
-        workers: processes; as many as there are cores where it is left out, 1 for this process alone. Rigs with a
-            Python function that no other process finds (a lambda) go by themselves in this process.
+        workers: processes; as many as there are cores where it is left out, 1 for this process alone. Where a rig has a
+            Python function that cannot be sent to another process, all go in this one.
         watch: called with (rigs done, rigs in all).
 
     Returns:
@@ -125,31 +127,38 @@ def simulate_many(
     run = partial(_one, end=end, points=points, tolerance=tolerance, method=method, watch=None)
     count = min(workers or os.cpu_count() or 1, max(1, len(given) // 8)) if workers is None else workers
     tell = watch or (lambda done, total: None)
-    if count <= 1 or not all(map(_travels, given)):
-        found = []
-        for k, (rig, charts) in enumerate(zip(given, maps, strict=True)):
-            found.append(_numbered(k, run, rig, charts))
-            tell(k + 1, len(given))
-        return found
-    return _spread(run, given, maps, count, tell)
+    sent = None if count <= 1 else _packed(given, maps, 8 * count)
+    if sent is not None:
+        return _spread(run, sent, count, lambda done: tell(done, len(given)))
+    found = []
+    for k, (rig, charts) in enumerate(zip(given, maps, strict=True)):
+        found.append(_numbered(k, run, rig, charts))
+        tell(k + 1, len(given))
+    return found
 
 
-def _spread(
-    run: Callable[..., Motion], rigs: list[Rig], maps: list[tuple[Any, ...]], workers: int, tell: Watch
-) -> list[Motion]:
-    """The rigs on several processes, in pieces that share their maps."""
-    fresh = {id(one): _fresh(one) for charts in maps for one in charts}
-    maps = [tuple(fresh[id(one)] for one in charts) for charts in maps]
-    pieces = np.array_split(np.arange(len(rigs)), min(len(rigs), 8 * workers))
+def _spread(run: Callable[..., Motion], pieces: list[bytes], workers: int, tell: Callable[[int], None]) -> list[Motion]:
+    """Pieces on several processes."""
     found: list[Motion] = []
     # No fork: JAX has threads by now, which a forked process would wait for.
-    with ProcessPoolExecutor(workers, mp_context=get_context("spawn")) as pool:
-        waiting = [pool.submit(_piece, run, int(piece[0]), [rigs[k] for k in piece], [maps[k] for k in piece])
-                   for piece in pieces]  # fmt: skip
-        for one in waiting:
+    with main_left_out(), ProcessPoolExecutor(workers, mp_context=get_context("spawn")) as pool:
+        for one in [pool.submit(_piece, run, piece) for piece in pieces]:
             found += one.result()
-            tell(len(found), len(rigs))
+            tell(len(found))
     return found
+
+
+def _packed(rigs: list[Rig], maps: list[tuple[Any, ...]], count: int) -> list[bytes] | None:
+    """The rigs in pieces as they travel, with the functions in them and the maps they share; None where one cannot."""
+    import cloudpickle
+
+    fresh = {id(one): _fresh(one) for charts in maps for one in charts}
+    pairs = [(k, rig, tuple(fresh[id(one)] for one in maps[k])) for k, rig in enumerate(rigs)]
+    pieces = np.array_split(np.arange(len(rigs)), min(len(rigs), count))
+    try:
+        return [cloudpickle.dumps([pairs[k] for k in piece]) for piece in pieces]
+    except (pickle.PicklingError, AttributeError, TypeError):
+        return None
 
 
 def _fresh(chart: Any) -> Any:
@@ -157,8 +166,8 @@ def _fresh(chart: Any) -> Any:
     return attrs.evolve(chart) if attrs.has(type(chart)) else chart
 
 
-def _piece(run: Callable[..., Motion], first: int, rigs: list[Rig], maps: list[tuple[Any, ...]]) -> list[Motion]:
-    return [_numbered(first + k, run, rig, charts) for k, (rig, charts) in enumerate(zip(rigs, maps, strict=True))]
+def _piece(run: Callable[..., Motion], piece: bytes) -> list[Motion]:
+    return [_numbered(k, run, rig, charts) for k, rig, charts in pickle.loads(piece)]
 
 
 def _numbered(k: int, do: Callable[..., Any], *given: Any) -> Any:
@@ -167,17 +176,6 @@ def _numbered(k: int, do: Callable[..., Any], *given: Any) -> Any:
         return do(*given)
     except SpecError as error:
         raise error.renamed(f"rigs[{k}]: {error.field}") from error
-
-
-def _travels(rig: Rig) -> bool:
-    """Whether another process can be given a rig."""
-    import pickle
-
-    try:
-        pickle.dumps((rig.command, rig.antagonist_command))
-    except (pickle.PicklingError, AttributeError, TypeError):
-        return False
-    return True
 
 
 def _one(

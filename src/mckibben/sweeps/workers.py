@@ -10,7 +10,6 @@ from __future__ import annotations
 import asyncio
 import logging
 import os
-import sys
 from collections import deque
 from collections.abc import Callable, Iterator
 from contextlib import ExitStack, contextmanager
@@ -18,6 +17,7 @@ from itertools import count
 from typing import TYPE_CHECKING, Any
 from uuid import uuid4
 
+from mckibben.processes import main_left_out
 from mckibben.spec import SpecError
 from mckibben.sweeps.outcome import Columns, Status, empty, refuse
 from mckibben.sweeps.plan import Plan, versions
@@ -64,7 +64,7 @@ def _client(workers: int | None, scheduler: str | None) -> Iterator[Client]:
             _reach(scheduler)
             yield stack.enter_context(Client(scheduler, set_as_default=False))
             return
-        stack.enter_context(_main_left_out())
+        stack.enter_context(main_left_out())
         stack.enter_context(dask.config.set({"distributed.scheduler.allowed-failures": DEATHS}))
         try:
             cluster = LocalCluster(
@@ -98,23 +98,6 @@ def _environment() -> dict[str, str]:
     said = ("MCKIBBEN_CACHE", "MCKIBBEN_COMPILE", "JAX_COMPILATION_CACHE_DIR")
     kept = {name: os.environ[name] for name in said if name in os.environ}
     return {name: os.environ.get(name, value) for name, value in (THREADS | kept).items()}
-
-
-@contextmanager
-def _main_left_out() -> Iterator[None]:
-    """New processes do not run the user's script once more, as they else do to find what it defines.
-
-    They need nothing from it (functions of the script travel whole), and a script without the usual guard,
-    `if __name__ == "__main__":`, would start the sweep again and again.
-    """
-    main = sys.modules["__main__"]
-    hidden: dict[str, Any] = {name: main.__dict__[name] for name in ("__file__", "__spec__") if name in main.__dict__}
-    main.__dict__.pop("__file__", None)
-    main.__dict__["__spec__"] = None
-    try:
-        yield
-    finally:
-        main.__dict__.update(hidden)
 
 
 def _flow(client: Client, plan: Plan, missing: list[int], keep: Callable[[int, Columns], None]) -> None:
