@@ -35,6 +35,9 @@ ROUNDS = 20
 """Sets of moments at most; each is closer than the one before by about mu a/l, some hundredth."""
 SETTLED = 1e-8
 """Largest change of a moment in the last round over the largest moment, at most."""
+ROUGH, SHARE = 1e-4, 1e-2
+"""What is enough of `CLOSE` in a round whose moments are not the last: the first one, and over the change of moments in
+the round before in the others."""
 
 
 class Stepped(NamedTuple):
@@ -55,6 +58,7 @@ class _Round(NamedTuple):
     state: Unknowns
     outer: Crossing
     change: Array  #: largest change of a moment over the largest moment
+    step: Array  #: largest change of an unknown in the last Newton step
     rounds: Array
     iterations: Array
     good: Array
@@ -92,12 +96,12 @@ def rub(
         new = state._replace(u=state.u + c.step.u, loads=state.loads + c.step.loads)
         return new, jnp.abs(c.step.u).max(), c.stable
 
-    def solved(start: Unknowns, stuck: Array) -> tuple[Unknowns, Array, Array]:
+    def solved(start: Unknowns, stuck: Array, close: Array) -> tuple[Unknowns, Array, Array, Array]:
         moment = start.memory.moment
 
         def more(now: Any) -> Array:
             _, change, taken, stable = now
-            return (change > CLOSE) & (taken < CORRECTIONS) & stable
+            return (change > close) & (taken < CORRECTIONS) & stable
 
         def again(now: Any) -> Any:
             state, _, taken, _ = now
@@ -107,22 +111,24 @@ def rub(
 
         begin = (start, jnp.asarray(jnp.inf), jnp.zeros((), int), jnp.array(True))
         found, change, taken, stable = jax.lax.while_loop(more, again, begin)
-        return found._replace(memory=start.memory), taken, stable & (change <= CLOSE)
+        return found._replace(memory=start.memory), change, taken, stable & (change <= close)
 
     def more(now: _Round) -> Array:
-        return (now.change > SETTLED) & (now.rounds < ROUNDS) & now.good
+        return ((now.change > SETTLED) | (now.step > CLOSE)) & (now.rounds < ROUNDS) & now.good
 
     def again(now: _Round) -> _Round:
-        found, taken, good = solved(now.state, stuck & (now.rounds == 0))
+        close = jnp.clip(SHARE * now.change, CLOSE, ROUGH)
+        found, step, taken, good = solved(now.state, stuck & (now.rounds == 0), close)
         inner, outer = moments(basis, on, found, now.outer)
         change = jnp.abs(inner - found.memory.moment).max() / jnp.maximum(inner.max(), 1e-300)
         return _Round(
-            found._replace(memory=found.memory._replace(moment=inner)), now.outer._replace(moment=outer), change,
+            found._replace(memory=found.memory._replace(moment=inner)), now.outer._replace(moment=outer), change, step,
             now.rounds + 1, now.iterations + taken, good,
         )  # fmt: skip
 
     none = jnp.zeros((), int)
-    start = _Round(state, kept, jnp.asarray(jnp.inf), none, none, jnp.array(True))
+    far = jnp.asarray(jnp.inf)
+    start = _Round(state, kept, far, far, none, none, jnp.array(True))
     found = jax.lax.while_loop(more, again, start)
     return _after(basis, on, state, found)
 
@@ -145,7 +151,8 @@ def _after(basis: Basis, on: Placed, begun: Unknowns, found: _Round) -> Stepped:
     slipped = mean * jnp.abs(next_inner.alpha - state.memory.alpha)
     weights = jnp.asarray(basis.operators().weights) * on.jacobian
     many = crossings(inner, p)
-    good = found.good & (found.change <= SETTLED) & jnp.isfinite(state.u).all()
+    settled = (found.change <= SETTLED) & (found.step <= CLOSE)
+    good = found.good & settled & jnp.isfinite(state.u).all()
     return Stepped(
         state, found.outer, next_inner, next_outer, jnp.stack([weights @ one for one in rates[:2]]),
         many * (weights @ slipped) if inner.made is None else weights @ (many * slipped),
