@@ -17,6 +17,7 @@ import numpy as np
 import others
 import peer
 import scaling
+import tools
 from matplotlib.ticker import NullFormatter
 from timing import machine
 
@@ -30,7 +31,7 @@ def main() -> None:
     about = machine()
     exact = curve.reference()
     rows = curve.measure(exact) + batch.measure() + curve.measure_others(exact)
-    rows += effects.measure()
+    rows += effects.measure() + tools.measure()
     rows += others.measure(exact) + peer.measure(exact) + command.measure()
     following = next(row for row in rows if row["name"].startswith("following alone, 24"))
     unit = following["processor_s"] / following["states"]
