@@ -72,7 +72,7 @@ def _dataset(variables: dict[str, Any], coords: dict[str, Any], about: dict[str,
 
 def _of_muscles(plant: Plant, y: np.ndarray, seen: dict[str, np.ndarray]) -> dict[str, np.ndarray]:
     """The variables of the muscles, (time, muscle) each."""
-    parts = y[:, FIRST:].reshape(len(y), plant.n, PER)
+    parts = y[:, FIRST : FIRST + PER * plant.n].reshape(len(y), plant.n, PER)
     inside = dict(
         zip(("mass_in", "mass_out", "enthalpy", "heat", "work"), np.moveaxis(parts[:, :, 4:9], 2, 0), strict=True)
     )
