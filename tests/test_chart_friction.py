@@ -277,6 +277,7 @@ def test_a_slow_loop_is_that_of_a_path(chart: mk.Chart, method: str) -> None:
     of = [np.flatnonzero(np.isclose(motion.time[some], t))[0] for t in (2.0, 6.0)]
     lost = [values[of[1]] - values[of[0]] for values in (found.data["dissipated"].values, motion.of("lost")[some])]
     assert lost[1] == pytest.approx(lost[0], rel=0.03)
+    assert any("friction at the crossings goes by the length alone" in line for line in motion.notes)
     assert np.abs(motion.of("balance")).max() < 1e-4 * motion.of("work").max() + 1e-9 * motion.of("internal").max()
 
 
