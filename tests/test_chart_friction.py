@@ -289,3 +289,23 @@ def path(push: tuple[float, ...]) -> mk.Result:
     if push not in PATHS:
         PATHS[push] = mk.run(MUSCLE, mk.Step(force=list(push), pressure="1 bar", points=len(push)), tolerance=1e-3)
     return PATHS[push]
+
+
+def test_of_two_muscles_one_may_have_friction() -> None:
+    pulley = mk.Pulley(radius="20 mm", inertia="1e-3 kg m^2", length="101 mm", start=0.2)
+    rig = mk.Rig(muscle=MUSCLE, antagonist=MUSCLE, load=pulley, **PARTS)
+    found = []
+    for charts in ((Spring(even(0.2, 1e5)), Spring(None)), (Spring(None), Spring(even(0.2, 1e5)))):
+        motion = mk.simulate(rig, until="0.3 s", chart=charts, tolerance=1e-9)
+        assert np.abs(motion.of("balance")).max() < 1e-7
+        found.append(motion)
+    assert_allclose(found[0].angle, found[1].angle, atol=1e-6)  # two springs alike: friction does the same on either
+    assert found[0].of("lost")[-1] == pytest.approx(found[1].of("lost")[-1], rel=1e-5)
+    assert found[0].of("lost")[-1] > 0.1 * (0.5 * 1600.0 * 0.004**2)
+    assert_allclose(found[0].force[:, 0] - 800.0 * (found[0].length[:, 0] - 0.1), 0.0, atol=0.2 * (1 + 1e-6))
+
+
+def test_a_frequency_response_is_that_without_friction() -> None:
+    rig = mk.Rig(muscle=MUSCLE, load=mk.Load(mass="2 kg", gravity=0.0), **PARTS)
+    found = mk.bode(rig, frequency="1 Hz", chart=Spring(even(0.5, 1e6)))
+    assert found.natural_frequency == pytest.approx(math.sqrt(800.0 / 2.0) / (2.0 * math.pi), rel=1e-6)
