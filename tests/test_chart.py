@@ -267,10 +267,7 @@ def test_what_is_no_range_is_refused(asked: dict[str, Any], said: str) -> None:
         mk.chart(mk.presets.paper(), **(RANGE | asked))
 
 
-def test_friction_and_wrong_points_are_refused(chart: mk.Chart) -> None:
-    rough = mk.presets.paper().replace("friction", mk.Friction(coefficient=0.2, arm="0.05 mm"))
-    with pytest.raises(mk.SpecError, match="depends on the path"):
-        mk.chart(rough, **RANGE)
+def test_wrong_points_are_refused(chart: mk.Chart) -> None:
     with pytest.raises(mk.SpecError, match=r"chart.length = .*10 quarks"):
         chart.force("10 quarks", 1e5)
     with pytest.raises(mk.SpecError, match="finite"):

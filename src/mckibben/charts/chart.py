@@ -10,9 +10,9 @@ import attrs
 import numpy as np
 
 from mckibben.charts import edges as of_edges
+from mckibben.charts.friction import with_friction
 from mckibben.charts.sample import Samples, sample
 from mckibben.charts.series import Edges, Scales, fitted, scales_of
-from mckibben.experiments.foresee import refuse_friction
 from mckibben.measure.report import versions
 from mckibben.model.extension import longest
 from mckibben.model.parameters import parameters
@@ -20,6 +20,7 @@ from mckibben.potential.chart import Chart
 from mckibben.potential.evaluate import Table, evaluate, largest_radius, unbounded
 from mckibben.potential.table import variables_of
 from mckibben.spec import Muscle, SpecError, Step
+from mckibben.spec.declared import evolved
 from mckibben.spec.text import to_toml
 from mckibben.units import show
 
@@ -55,6 +56,10 @@ def chart(
     tolerance; the largest error there is `chart.error`. Lengths at which the muscle is not stable and admissible are
     left out of the range, with a note.
 
+    Of a muscle with friction the map is that without, and beside it half of what lies between its sliding branches
+    (`Chart.friction`, `Chart.branches`) and how stiff crossings are that stick: which of the forces between them there
+    is depends on the path, which `simulate` follows.
+
     Args:
         muscle: the specification.
         length: the lengths [m], from the shortest to the longest: "60 mm to 115 mm", or a pair.
@@ -68,13 +73,17 @@ def chart(
 
     Raises:
         SpecError: for an empty range, one at or near full extension, or one in which the muscle has no stable state;
-            for a muscle with friction, whose force depends on the path.
+            for so much friction that states in which all crossings slip are not found.
 
     >>> chart = mk.chart(mk.presets.paper(), length="60 mm to 115 mm", pressure="0 to 3 bar")
     >>> bool(chart.error < 1e-4), round(float(chart.force("115 mm", "1 bar")), 1)  # N
     (True, 101.2)
     """
-    refuse_friction(muscle, "chart")
+    if muscle.friction is not None:
+        plain = chart(
+            evolved(muscle, friction=None), length=length, pressure=pressure, tolerance=tolerance, watch=watch
+        )
+        return with_friction(muscle, plain, watch or (lambda done, total: None))
     if not isinstance(tolerance, (int, float)) or not TOLERANCES[0] <= tolerance <= TOLERANCES[1]:
         raise SpecError("chart.tolerance", tolerance, f"must be from {TOLERANCES[0]:g} to {TOLERANCES[1]:g}")
     asked = _asked(muscle, length, pressure)

@@ -1,4 +1,4 @@
-"""The forces between which a muscle whose crossings rub may be: all of them slip one way, or all the other way."""
+"""What a muscle whose crossings rub does without a path: all of them slip, one way or the other, or all stick."""
 
 from typing import Any
 
@@ -6,20 +6,25 @@ import attrs
 import numpy as np
 
 from mckibben.experiments.rubbing import Going
-from mckibben.measure.rub import rub
+from mckibben.measure.rub import Stepped, rub
 from mckibben.model.friction import Crossing
 from mckibben.solver.bench import Bench
 from mckibben.solver.equilibrium import Equilibrium
 from mckibben.solver.held import Held, rows_of, targets_of
+from mckibben.solver.problem import Problem
 from mckibben.solver.system import Unknowns
 from mckibben.solver.threads import one_thread
 
-__all__ = ["sliding_forces"]
+__all__ = ["sliding_forces", "sticking"]
 
 FAR = 10.0
 """Turn [rad] since crossings were free of moment, from which all of them slip: more than they can ever turn."""
 LEGS = 8
 """Parts in which friction is brought up where it is too much at once."""
+NUDGE = 1e-5
+"""Part of the length by which a muscle is lengthened to see how stiff its crossings are."""
+HELD = 1e3
+"""Moment [N m] at which no crossing slips in such a step."""
 
 
 @one_thread()
@@ -44,6 +49,27 @@ def _sliding(bench: Bench, free: Equilibrium, way: float) -> float | None:
     return None
 
 
+@one_thread()
+def sticking(bench: Bench, free: Equilibrium) -> float | None:
+    """What crossings that all stick, free of moment in a state without friction, add to its stiffness dF/dh [N/m]."""
+    loose, stiff = (
+        attrs.evolve(free.problem, p=bench.p._replace(friction=bench.p.friction._replace(arm=0.0, moment=moment)))
+        for moment in (0.0, HELD)
+    )
+    made, held, step = Going.as_made(loose), Held.of(length=free.length, pressure=free.pressure), NUDGE * free.length
+    there = _rubbed(loose, Unknowns(free.u, free.loads, made.state.memory), made.outer, held)
+    if not there.good:
+        return None
+    memories = [Crossing(np.asarray(one.alpha), np.full(len(one.alpha), HELD))
+                for one in (there.next_inner, there.next_outer)]  # fmt: skip
+    further = Held.of(length=free.length + step, pressure=free.pressure)
+    slack = _rubbed(loose, there.state._replace(memory=made.state.memory), made.outer, further)
+    tight = _rubbed(stiff, there.state._replace(memory=memories[0]), memories[1], further)
+    if not (slack.good and tight.good):
+        return None
+    return float((tight.state.loads[0] - slack.state.loads[0]) * free.problem.load_unit[1] / step)
+
+
 def _found(bench: Bench, free: Equilibrium, start: Any, way: float, share: float) -> Unknowns | None:
     """The state in which all crossings slip with a share of the friction, from one with less."""
     friction = bench.p.friction
@@ -52,8 +78,12 @@ def _found(bench: Bench, free: Equilibrium, start: Any, way: float, share: float
     made = Going.as_made(problem)
     inner, outer = (Crossing(one.alpha - way * FAR, one.moment) for one in (made.state.memory, made.outer))
     held = Held.of(length=free.length, pressure=free.pressure)
+    found = _rubbed(problem, Unknowns(np.asarray(start.u), np.asarray(start.loads), inner), outer, held)
+    return found.state if found.good else None
+
+
+def _rubbed(problem: Problem, state: Unknowns, outer: Crossing, held: Held) -> Stepped:
+    """One step from a state with its memory to what is held."""
     own, which = rows_of(held.names, problem.loads)
     targets = targets_of((held,), problem.unit, problem.loads)[0]
-    state = Unknowns(np.asarray(start.u), np.asarray(start.loads), inner)
-    found = rub((problem.basis, own), problem.p, problem.b, state, outer, which, targets, np.asarray(False))
-    return found.state if found.good else None
+    return rub((problem.basis, own), problem.p, problem.b, state, outer, which, targets, np.asarray(False))

@@ -8,7 +8,7 @@ import json
 import numpy as np
 
 from mckibben.potential.chart import Chart
-from mckibben.potential.grid import COLUMNS, grid
+from mckibben.potential.grid import grid
 
 __all__ = ["as_json", "as_mat"]
 
@@ -38,6 +38,6 @@ def as_json(chart: Chart, lengths: int, pressures: int) -> str:
         "length": found.length.tolist(), "pressure": found.pressure.tolist(), **tables,
         "errors": {"force": chart.force_error, "volume": chart.volume_error, "largest_radius": chart.radius_error,
                    "force_between_breakpoints": found.error},
-        "units": COLUMNS, "notes": list(chart.told), "mckibben_version": str(about["mckibben_version"]),
+        "units": found.units, "notes": list(chart.told), "mckibben_version": str(about["mckibben_version"]),
     }  # fmt: skip
     return json.dumps(held, indent=1) + "\n"

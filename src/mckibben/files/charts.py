@@ -31,6 +31,13 @@ _ABOUT = {
     **{f"largest_{name}": float for name in ("force", "volume", "radius")},
 }  # fmt: skip
 """Attributes that a file must have."""
+_RUBS: dict[str, tuple[tuple[str, ...], str]] = {
+    "friction": (("i_friction", "j_friction"), "f"), "sticking": (("i_friction", "j_friction"), "f"),
+    **{f"check_branch_{name}": (("check_branch",), "f")
+       for name in ("length", "pressure", "shortening", "lengthening")},
+}  # fmt: skip
+_ABOUT_RUBS = {"friction_error": float, "sticking_error": float, "largest_friction": float}
+"""What that of a muscle with friction must have too."""
 
 
 def save(chart: Chart, path: str | PathLike[str], force: bool = False) -> Path:
@@ -41,7 +48,10 @@ def save(chart: Chart, path: str | PathLike[str], force: bool = False) -> Path:
 def of(stored: xr.Dataset, name: str) -> Chart:
     """The map that a file of this name holds; SpecError where it holds something else."""
     data = checked(stored, name, "chart", _NEEDED, _ABOUT, ("number",))
-    return Chart(muscle_in(name, data.attrs["muscle"]), data)
+    muscle = muscle_in(name, data.attrs["muscle"])
+    if muscle.friction is not None:
+        data = checked(stored, name, "chart", _NEEDED | _RUBS, _ABOUT | _ABOUT_RUBS, ("number",))
+    return Chart(muscle, data)
 
 
 def save_csv(chart: Chart, path: str | PathLike[str], force: bool = False) -> Path:

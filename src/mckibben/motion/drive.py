@@ -111,7 +111,7 @@ def _scales(plant: Plant) -> np.ndarray:
     """The size of each number of the state, below which errors do not matter."""
     place = 0.1 if plant.rig.turns else 0.01
     muscle = [1e5, 100.0, 0.01, 10.0, 1e-5, 1e-5, 1.0, 1.0, 1.0]
-    return np.array([place, 10.0 * place, 1.0, 1.0] + muscle * plant.n)
+    return np.array([place, 10.0 * place, 1.0, 1.0] + muscle * plant.n + [0.01] * len(plant.rubs))
 
 
 def _ended(regime: Regime, y: list[float], t: float) -> Ended | None:

@@ -32,9 +32,9 @@ INPUTS = ("push", "command")
 def bode(rig: Rig, *, frequency: Any, of: str = "", by: str = "push", chart: Any = None) -> Bode:
     """The frequency response of a rig about its equilibrium at the start, where its valves are closed.
 
-    The equations are made linear there, by differences. Friction of the load and end stops are left out, as are cables
-    that might go slack. About a closed valve, filling and venting have different slopes: a command is answered by the
-    mean of the two, as the first harmonic of a small sine is.
+    The equations are made linear there, by differences. Friction, of the load and at the crossings, and end stops are
+    left out, as are cables that might go slack. About a closed valve, filling and venting have different slopes: a
+    command is answered by the mean of the two, as the first harmonic of a small sine is.
 
     Args:
         rig: the rig; `rig.pressure` says about which pressure.

@@ -5,10 +5,12 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import Any, NamedTuple, Protocol, runtime_checkable
 
-__all__ = ["At", "Ends", "Mapped", "ends_of"]
+__all__ = ["At", "Ends", "Mapped", "RubbingAt", "ends_of"]
 
 At = Callable[[float, float], Any]
 """Length [m] and gauge pressure [Pa] -> force, volume, stiffness, volume_by_length and so on, as `Chart.at` has it."""
+RubbingAt = Callable[[float, float], Any]
+"""The same -> friction, sticking, room and its slopes, as `Chart.rubbing_at` has it where there is friction."""
 
 
 @runtime_checkable

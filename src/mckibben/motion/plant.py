@@ -7,7 +7,7 @@ from collections.abc import Callable, Sequence
 
 import attrs
 
-from mckibben.motion.mapped import At, Mapped
+from mckibben.motion.mapped import At, Mapped, RubbingAt
 from mckibben.spec.air import Isothermal, WallHeat
 from mckibben.spec.loads import Load, Pulley
 from mckibben.spec.rig import Rig
@@ -25,6 +25,7 @@ class Plant:
     rig: Rig
     charts: Sequence[Mapped]
     ats: list[At]
+    rubs: dict[int, RubbingAt]  #: friction at the crossings, of the muscles that have it
     edges: list[tuple[float, float, float, float]]  #: of the pressures of the maps, and just beyond
     dead: list[float]  #: air [m^3] that is not inside the braid
     offsets: list[float]  #: the length of each muscle is offset + ratio x
@@ -58,6 +59,7 @@ class Plant:
         assert rig.supply is not None
         return cls(
             rig=rig, charts=charts, ats=[chart.at for chart in charts], edges=[_edges(chart) for chart in charts],
+            rubs={k: chart.rubbing_at for k, chart in enumerate(charts) if getattr(chart, "rubbing_at", None)},  # type: ignore[attr-defined]
             dead=[rig.tube + _without_rubber(chart) for chart in charts], offsets=offsets, ratios=ratios,
             valves=[(valve.C, valve.venting, valve.b) for valve in rig.valves],
             supplied=rig.supplied, source=rig.supply.temperature, atmosphere=rig.atmosphere, around=rig.temperature,

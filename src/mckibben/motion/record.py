@@ -72,7 +72,7 @@ def _dataset(variables: dict[str, Any], coords: dict[str, Any], about: dict[str,
 
 def _of_muscles(plant: Plant, y: np.ndarray, seen: dict[str, np.ndarray]) -> dict[str, np.ndarray]:
     """The variables of the muscles, (time, muscle) each."""
-    parts = y[:, FIRST:].reshape(len(y), plant.n, PER)
+    parts = y[:, FIRST : FIRST + PER * plant.n].reshape(len(y), plant.n, PER)
     inside = dict(
         zip(("mass_in", "mass_out", "enthalpy", "heat", "work"), np.moveaxis(parts[:, :, 4:9], 2, 0), strict=True)
     )
@@ -166,7 +166,12 @@ def _of_balance(variables: dict[str, Any]) -> list[str]:
 
 
 def _of_map(chart: Mapped) -> Sequence[str]:
-    error = getattr(chart, "error", None)
-    return (
-        [] if error is None else [f"the forces are those of a map, good to {100.0 * float(error):.2g} % of the largest"]
-    )
+    found, error = [], getattr(chart, "error", None)
+    if error is not None:
+        found.append(f"the forces are those of a map, good to {100.0 * float(error):.2g} % of the largest")
+    if getattr(chart, "rubbing_at", None) is not None:
+        off = getattr(chart, "friction_error", None)
+        good = "" if off is None else f" that are good to {show(float(off), 'N', 2)}"
+        said = "friction at the crossings goes by the length alone; pressure turns them too"
+        found.append(f"{said}, and leaves a muscle at a fixed length anywhere between its branches{good}")
+    return found

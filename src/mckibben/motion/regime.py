@@ -2,7 +2,8 @@
 
 The state is x (length, or angle of a pulley), its speed, what was lost to friction and what was pushed in, and for each
 muscle absolute pressure, temperature, its own length, force of the viscous spring, and mass taken from the supply, mass
-given to the atmosphere, and enthalpy, heat and work so far. The equations are on the theory page.
+given to the atmosphere, and enthalpy, heat and work so far. After these comes what the crossings of each muscle with
+friction remember. The equations are on the page of motion.
 """
 
 from __future__ import annotations
@@ -12,6 +13,7 @@ from typing import NamedTuple
 
 import attrs
 
+from mckibben.motion.crossings import rubbed
 from mckibben.motion.flow import GAMMA, GAS, HEAT, mass_flow
 from mckibben.motion.plant import Plant
 
@@ -84,16 +86,30 @@ class Regime:
         outer = self.outside(t)
         push = plant.weight + outer - plant.damping * v - plant.spring * (x - plant.rest)
         lost = plant.damping * v * v + plant.friction * abs(v)
-        state, muscles = [v, 0.0, lost, outer * v], []
+        state, muscles, kept = [v, 0.0, lost, outer * v], list[Seen](), list[float]()
         for k, command in enumerate(self.commands):
-            part, seen, rubbed = self._muscle(k, command(t), y, x, v, mode.slack[k])
+            part, seen, warmed = self._muscle(k, command(t), y, x, v, mode.slack[k])
+            if k in plant.rubs:
+                seen, rate, heat = self._rubbed(k, part, seen, y[FIRST + PER * plant.n + len(kept)])
+                kept.append(rate)
+                warmed += heat
             push -= plant.ratios[k] * seen.force
-            state[2] += rubbed
+            state[2] += warmed
             state += part
             muscles.append(seen)
         if moves:
             state[1] = (push - mode.sliding * plant.friction) / plant.mass
-        return Rates(state, muscles, push)
+        return Rates(state + kept, muscles, push)
+
+    def _rubbed(self, k: int, part: list[float], seen: Seen, e: float) -> tuple[Seen, float, float]:
+        """A muscle's numbers with the friction at its crossings: what is seen, the rate of e, and heat."""
+        plant = self.plant
+        low, first, last, high = plant.edges[k]
+        P = first if low < seen.pressure < first else last if last < seen.pressure < high else seen.pressure
+        found = rubbed(plant.rubs[k], seen.length, P, seen.speed, part[0], e)
+        part[8] -= found.force * seen.speed
+        seen = seen._replace(force=seen.force + found.force, stored=seen.stored + found.stored)
+        return seen, found.rate, found.lost
 
     def _muscle(
         self, k: int, u: float, y: Sequence[float], x: float, v: float, slack: bool

@@ -44,6 +44,7 @@ def simulate(
     """A rig in motion: muscle, load, air, valve and command, from rest at time 0 on.
 
     The muscle is the map that `chart` gives: force and volume as functions of length and gauge pressure, quasi-static.
+    One with friction at its crossings moves between the branches of its map, by the path of its length.
     Its air is an ideal gas, the valve follows ISO 6358. Jumps of commands, samples of controllers, end stops, friction
     that holds and cables that go slack end a stretch of time, and the next begins: none is stepped over.
 

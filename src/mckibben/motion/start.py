@@ -30,7 +30,7 @@ class Begun(NamedTuple):
 def state_of(plant: Plant, x: float) -> list[float]:
     """The state at rest at a place, without slack, at the pressures of the start."""
     rig = plant.rig
-    y = [x, 0.0, 0.0, 0.0] + [0.0] * (PER * plant.n)
+    y = [x, 0.0, 0.0, 0.0] + [0.0] * (PER * plant.n + len(plant.rubs))
     for k, P in enumerate(rig.pressures):
         y[FIRST + PER * k : FIRST + PER * k + 3] = [
             P + rig.atmosphere,

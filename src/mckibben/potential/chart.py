@@ -11,6 +11,8 @@ import numpy as np
 
 from mckibben.potential import inverse
 from mckibben.potential.evaluate import Table, Values, across, edge, evaluate, in_blocks, largest_radius
+from mckibben.potential.rubbing import At as RubbingAt
+from mckibben.potential.rubbing import Rubbing, Rubs, rubbing, rubbing_at, rubs_of
 from mckibben.potential.scalar import scalar
 from mckibben.potential.table import table_of
 from mckibben.shown import Shown
@@ -74,12 +76,22 @@ class Chart(Shown):
         """The quick way for one point: a function of length [m] and pressure [Pa], both floats, that gives `Values`."""
         return scalar(self.table)
 
+    @cached_property
+    def rubs(self) -> Rubs | None:
+        """The numbers of the friction at the crossings; None for a muscle without."""
+        return rubs_of(self.data)
+
+    @cached_property
+    def rubbing_at(self) -> RubbingAt | None:
+        """The quick way for the friction at one point, as `at`; None for a muscle without."""
+        return None if self.rubs is None else rubbing_at(self.rubs, self.table)
+
     def values(self, length: Any, pressure: Any) -> Values:
         """All at once: force, volume, stiffness, volume_by_length, volume_by_pressure, potential and inside."""
         return in_blocks(self.table, _read("length", length, "m"), _read("pressure", pressure, "Pa"))
 
     def force(self, length: Any, pressure: Any, slack: bool = False) -> Any:
-        """Force [N]; with `slack` not below zero, as behind a tendon, which does not push."""
+        """Force [N] without friction; with `slack` not below zero, as behind a tendon, which does not push."""
         force = self.values(length, pressure).force
         return np.maximum(force, 0.0) if slack else force
 
@@ -104,6 +116,25 @@ class Chart(Shown):
         """Largest radius [m] along the muscle: a function of its own, with an error of its own (`radius_error`)."""
         h, P = np.broadcast_arrays(_read("length", length, "m"), _read("pressure", pressure, "Pa"))
         return largest_radius(self.table, h.ravel(), P.ravel()).reshape(h.shape)
+
+    def friction(self, length: Any, pressure: Any) -> Any:
+        """Half of what lies between the sliding branches [N]: the friction of crossings that all slip; 0 without."""
+        return self._rubbing(length, pressure).friction
+
+    def sticking(self, length: Any, pressure: Any) -> Any:
+        """What crossings that stick add to dF/dh [N/m], as where a path turns; 0 without friction."""
+        return self._rubbing(length, pressure).sticking
+
+    def branches(self, length: Any, pressure: Any) -> tuple[Any, Any]:
+        """The forces [N] between which friction leaves the muscle: as it shortens, and as it lengthens."""
+        force, friction = self.force(length, pressure), self.friction(length, pressure)
+        return force - friction, force + friction
+
+    def _rubbing(self, length: Any, pressure: Any) -> Rubbing:
+        h, P = np.broadcast_arrays(_read("length", length, "m"), _read("pressure", pressure, "Pa"))
+        if self.rubs is None:
+            return Rubbing(*np.zeros((5, *h.shape)))
+        return Rubbing(*(one.reshape(h.shape) for one in rubbing(self.rubs, self.table, h.ravel(), P.ravel())))
 
     def inside(self, length: Any, pressure: Any) -> Any:
         """Whether points lie in the range, where the muscle is stable and the error holds."""
@@ -184,6 +215,11 @@ class Chart(Shown):
         return float(self.data.attrs["radius_error"])
 
     @property
+    def friction_error(self) -> float:
+        """The largest error of the sliding branches [N] at states that were not used; 0 without friction."""
+        return float(self.data.attrs.get("friction_error", 0.0))
+
+    @property
     def largest_force(self) -> float:
         """The largest force [N] of the range, pulling or pushing."""
         return float(self.data.attrs["largest_force"])
@@ -233,7 +269,8 @@ class Chart(Shown):
 
         about = self.data.attrs
         rows = {}
-        for name, unit in (("force", "N"), ("volume", "m^3"), ("radius", "m")):
+        rubs = () if self.rubs is None else (("friction", "N"),)
+        for name, unit in (("force", "N"), ("volume", "m^3"), ("radius", "m"), *rubs):
             error, largest = float(about[f"{name}_error"]), float(about[f"largest_{name}"])
             rows[name] = (show(largest, unit, 4), show(error, unit, 2), f"{100 * error / largest:.2g} %")
         return pd.DataFrame(rows, index=["largest", "error", "relative"]).T

@@ -30,13 +30,20 @@ class Grid:
     pressure: np.ndarray
     values: Values
     largest_radius: np.ndarray
+    friction: np.ndarray | None  #: half of what lies between the sliding branches [N]; None for a muscle without
     error: float  #: largest error of the force [N] of linear interpolation between the breakpoints, in the range
 
     @property
     def tables(self) -> dict[str, np.ndarray]:
         """All but the breakpoints, by their names in `COLUMNS`."""
         own = self.values._asdict() | {"largest_radius": self.largest_radius}
-        return {name: np.asarray(own[name]) for name in list(COLUMNS)[2:]}
+        rubs = {} if self.friction is None else {"friction": self.friction}
+        return {name: np.asarray(own[name]) for name in list(COLUMNS)[2:]} | rubs
+
+    @property
+    def units(self) -> dict[str, str]:
+        """Of all that it holds."""
+        return COLUMNS | ({} if self.friction is None else {"friction": "N"})
 
 
 def grid(chart: Chart, lengths: int = LENGTHS, pressures: int = PRESSURES) -> Grid:
@@ -49,7 +56,8 @@ def grid(chart: Chart, lengths: int = LENGTHS, pressures: int = PRESSURES) -> Gr
     between = chart.values(finer[0][:, None], finer[1])
     off = np.abs(_between(_between(values.force).T).T - between.force)
     error = float(np.where(between.inside, off, 0.0).max()) + chart.force_error
-    return Grid(h, P, values, chart.largest_radius(h[:, None], P), error)
+    friction = None if chart.rubs is None else chart.friction(h[:, None], P)
+    return Grid(h, P, values, chart.largest_radius(h[:, None], P), friction, error)
 
 
 def _between(values: np.ndarray) -> np.ndarray:
@@ -63,9 +71,10 @@ def table(chart: Chart, lengths: int = LENGTHS, pressures: int = PRESSURES) -> s
     """The grid as CSV, a line for each point."""
     found, text = grid(chart, lengths, pressures), io.StringIO(newline="")
     writer = csv.writer(text, lineterminator="\n")
-    writer.writerow([f"{name} [{unit}]" if unit != "1" else name for name, unit in COLUMNS.items()])
-    tables = found.tables
+    tables, units = found.tables, found.units
     inside = tables.pop("inside").ravel().astype(int).tolist()
+    names = ["length", "pressure", *tables, "inside"]
+    writer.writerow([f"{name} [{units[name]}]" if units[name] != "1" else name for name in names])
     columns = [*np.meshgrid(found.length, found.pressure, indexing="ij"), *tables.values()]
     for numbers, within in zip(np.stack([one.ravel() for one in columns], axis=1).tolist(), inside, strict=True):
         writer.writerow([*numbers, within])  # str of a float has all its digits

@@ -53,7 +53,7 @@ class Rig:
     """What `simulate` sets in motion: muscle, load, supply, valve, and the command of the valve over time.
 
     Args:
-        muscle: the muscle; without friction, as its map has none.
+        muscle: the muscle; with friction at its crossings only where nothing goes slack.
         load: `FixedEnd` (isometric), `Load` (a mass on a line) or `Pulley`.
         supply: where the air comes from.
         valve: through what it goes.
@@ -109,8 +109,8 @@ class Rig:
                     f"rig.{name}", allowed="is missing: a rig without air does not move", advice=f"such as {advice}"
                 )
         for name, muscle in (("muscle", self.muscle), ("antagonist", self.antagonist)):
-            if muscle is not None and muscle.friction is not None:
-                said = "is not simulated: its force depends on the path, and the map has none"
+            if muscle is not None and muscle.friction is not None and getattr(self.load, "slack", False):
+                said = "does not go with slack = true: where a slack muscle has no force depends on the path"
                 raise SpecError(
                     f"{name}.friction", allowed=said, advice=f'leave it out: {name}.replace("friction", None)'
                 )

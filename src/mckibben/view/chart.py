@@ -16,6 +16,7 @@ __all__ = ["charted"]
 CURVES = 5
 """Pressures of which the force is drawn."""
 OUTSIDE = "goes on outside the range"
+RUBS = "with friction"
 FINE = 201
 BEYOND = 0.06
 """How far the picture goes beyond the range, over its size."""
@@ -48,6 +49,11 @@ def _curves(axes: Axes, chart: Chart) -> None:
         inside, room = np.linspace(low, high, FINE), BEYOND * (high - low)
         colour = style.LINES[k % len(style.LINES)]
         forces.append(chart.force(inside, P))
+        if chart.rubs is not None:
+            low_force, high_force = chart.branches(inside, P)
+            label = None if k else RUBS
+            axes.fill_between(_contraction(chart, inside), low_force, high_force, color=colour, alpha=0.3, lw=0.0,
+                              label=label)  # fmt: skip
         axes.plot(_contraction(chart, inside), forces[-1], color=colour, lw=1.2, label=show(float(P), "Pa", 3))
         for side, outside in enumerate((np.linspace(low - room, low, 21), np.linspace(high, high + room, 21))):
             label = OUTSIDE if k + side == 0 else None
@@ -57,7 +63,7 @@ def _curves(axes: Axes, chart: Chart) -> None:
     axes.axhline(0.0, color="0.5", lw=0.6)
     axes.set(xlabel="Contraction (%)", ylabel=style.axis_label("force", "N"))
     handles, labels = axes.get_legend_handles_labels()
-    order = sorted(range(len(labels)), key=lambda k: labels[k] == OUTSIDE)
+    order = sorted(range(len(labels)), key=lambda k: labels[k] in (OUTSIDE, RUBS))
     style.tidy(axes)
     axes.legend([handles[k] for k in order], [labels[k] for k in order], loc="upper right", frameon=False,
                 fontsize=style.TICK - 0.5)  # fmt: skip
