@@ -91,7 +91,8 @@ def maps() -> list[dict[str, Any]]:
     times = timed(lambda: mk.chart(MUSCLE, **about), 2)
     chart = mk.chart(MUSCLE, **about)
     rig = mk.Rig(
-        muscle=MUSCLE, load=mk.Load(mass="2 kg", damping="20 N s/m", stop_high="110 mm"), supply=mk.Supply(gauge="2 bar"),
+        muscle=MUSCLE, load=mk.Load(mass="2 kg", damping="20 N s/m", stop_high="110 mm"),
+        supply=mk.Supply(gauge="2 bar"),
         valve=mk.Valve(C="0.05 L/(s bar)", b=0.3), command=mk.Jump(1.0, at="0.1 s"), tube="5 mL",
     )  # fmt: skip
     masses = np.linspace(1.0, 3.0, SIMULATIONS).tolist()
