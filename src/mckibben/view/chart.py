@@ -20,6 +20,8 @@ RUBS = "with friction"
 FINE = 201
 BEYOND = 0.06
 """How far the picture goes beyond the range, over its size."""
+LEGEND = 0.6
+"""Room above the forces, over their range, for what the lines mean."""
 
 
 def charted(chart: Chart) -> Figure:
@@ -59,13 +61,13 @@ def _curves(axes: Axes, chart: Chart) -> None:
             label = OUTSIDE if k + side == 0 else None
             axes.plot(_contraction(chart, outside), chart.force(outside, P), ":", color=colour, lw=1.0, label=label)
     lowest, highest = min(f.min() for f in forces), max(f.max() for f in forces)
-    axes.set_ylim(lowest - 0.08 * (highest - lowest), highest + 0.08 * (highest - lowest))
+    axes.set_ylim(lowest - 0.08 * (highest - lowest), highest + LEGEND * (highest - lowest))
     axes.axhline(0.0, color="0.5", lw=0.6)
     axes.set(xlabel="Contraction (%)", ylabel=style.axis_label("force", "N"))
     handles, labels = axes.get_legend_handles_labels()
     order = sorted(range(len(labels)), key=lambda k: labels[k] in (OUTSIDE, RUBS))
     style.tidy(axes)
-    axes.legend([handles[k] for k in order], [labels[k] for k in order], loc="upper right", frameon=False,
+    axes.legend([handles[k] for k in order], [labels[k] for k in order], loc="upper right", ncols=2, frameon=False,
                 fontsize=style.TICK - 0.5)  # fmt: skip
 
 
