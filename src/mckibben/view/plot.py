@@ -86,6 +86,8 @@ def plot(result: Any, kind: str = "auto", data: Any = None) -> Figure:
     >>> mk.plot(curve, kind="tension").axes[0].get_ylabel()
     'Fibre tension T (N)'
     """
+    if isinstance(kind, str) and kind.lower().endswith(".html"):
+        raise SpecError("plot.kind", kind, "is a file's name", f'mk.interactive(result, "{kind}") writes a page')
     if not isinstance(kind, str) or kind not in KINDS:
         raise SpecError("plot.kind", kind, "is unknown", nearest(str(kind), KINDS))
     if data is not None:
