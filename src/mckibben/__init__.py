@@ -58,6 +58,7 @@ _PUBLIC = {
     "mckibben.motionfits.fit": ("fit_motion",),
     "mckibben.results.motionfit": ("MotionFit",),
     "mckibben.view.plot": ("plot",),
+    "mckibben.view.interactive": ("interactive",),
     "mckibben.view.scene": ("scene",),
     "mckibben.view.animate": ("animate",),
     "mckibben.view.shapefile": ("save_shape",),

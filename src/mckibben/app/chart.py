@@ -36,7 +36,7 @@ def chart(
         typer.Option("--output", "-o", metavar="FILE", help="save to chart.nc (the map) or chart.csv (a table)"),
     ] = None,
     picture: Annotated[
-        Path | None, typer.Option("--plot", metavar="PICTURE", help="draw the map: .png, .pdf or .svg")
+        Path | None, typer.Option("--plot", metavar="PICTURE", help="draw the map: .png, .pdf, .svg or .html")
     ] = None,
     force: Force = False,
     as_json: AsJson = False,

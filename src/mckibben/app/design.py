@@ -35,7 +35,7 @@ def design(
         typer.Option("--output", "-o", metavar="FILE", help="save to design.nc (everything) or design.csv (a table)"),
     ] = None,
     picture: Annotated[
-        Path | None, typer.Option("--plot", metavar="PICTURE", help="draw the design: .png, .pdf or .svg")
+        Path | None, typer.Option("--plot", metavar="PICTURE", help="draw the design: .png, .pdf, .svg or .html")
     ] = None,
     muscle: Annotated[
         Path | None, typer.Option("--muscle", metavar="FILE.toml", help="write the best muscle, for a case file")

@@ -6,24 +6,20 @@ from collections.abc import Iterator
 from contextlib import contextmanager, suppress
 from enum import StrEnum
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated
+from typing import Annotated
 
 import typer
 
 from mckibben.app.console import command, examples, say, table
 from mckibben.app.options import Columns, Held, Units, pairs
-from mckibben.app.outputs import PICTURES, PIXELS
-
-if TYPE_CHECKING:
-    from matplotlib.figure import Figure
-
-    from mckibben.data.values import Data
+from mckibben.app.outputs import PICTURES, PIXELS, check_picture, picture
 
 __all__ = ["PLOT", "REPRODUCE", "plot", "reproduce"]
 
 PLOT = examples(
     "mckibben plot out.nc",
     "mckibben plot out.nc -o force.pdf",
+    "mckibben plot out.nc -o force.html",
     "mckibben plot out.nc --kind tension -o tension.svg",
     "mckibben plot out.nc --data bench.csv",
 )
@@ -47,7 +43,12 @@ def plot(
     file: Annotated[Path, typer.Argument(metavar="FILE.nc", help="what run, fit, design, chart or simulate saved")],
     output: Annotated[
         Path | None,
-        typer.Option("--output", "-o", metavar="PICTURE", help=r"the picture: .png, .pdf or .svg \[default: FILE.png]"),
+        typer.Option(
+            "--output",
+            "-o",
+            metavar="PICTURE",
+            help=r"the picture: .png, .pdf, .svg, or an interactive .html \[default: FILE.png]",
+        ),
     ] = None,
     kind: Annotated[
         Kind, typer.Option(help="auto: the curve of the test; profiles: radius and angle along the muscle")
@@ -62,6 +63,8 @@ def plot(
 ) -> None:
     """Draw a saved result, without solving anything again.
 
+    An .html is one page for a browser in which every point tells its numbers; it needs no network.
+
     With --data, measured points are drawn over the curve, and how far it is from them is noted and printed. How their
     file is read, mckibben data check tells; --column, --unit and --held are of that file.
     """
@@ -71,6 +74,7 @@ def plot(
     target = file.with_suffix(".png") if output is None else output
     suffix = store.suffix_of(target, PICTURES)
     disk.check_target(target, force)
+    check_picture(target)
     result = store.load(file)
     measured = None
     if data is not None:
@@ -78,25 +82,14 @@ def plot(
 
         asked = pairs("--column", columns), pairs("--unit", units), pairs("--held", held)
         measured = read.read_data(data, columns=asked[0], units=asked[1], held=asked[2])
-    figure = _figure(result, kind, measured)
     from mckibben.results.result import Result
-    from mckibben.view import style
 
-    disk.write(target, style.picture(figure, suffix[1:], PIXELS), force)
+    disk.write(target, picture(result, suffix, PIXELS, str(kind), measured), force)
     say(f"drawn: {target}")
     if measured is not None and isinstance(result, Result):
         for note in measured.assumptions:
             say(f"{measured.source}: {note}")
         say(f"model less measured: {compare.compare(result, measured)}")
-
-
-def _figure(result: object, kind: Kind, measured: Data | None) -> Figure:
-    import matplotlib
-
-    matplotlib.use("Agg")  # draws to files only, without a window
-    from mckibben.view.plot import plot
-
-    return plot(result, str(kind), measured)
 
 
 @command

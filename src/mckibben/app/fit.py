@@ -33,7 +33,7 @@ def fit(
         typer.Option("--output", "-o", metavar="FILE", help="save to fit.nc (everything) or fit.csv (the points)"),
     ] = None,
     picture: Annotated[
-        Path | None, typer.Option("--plot", metavar="PICTURE", help="draw the fit: .png, .pdf or .svg")
+        Path | None, typer.Option("--plot", metavar="PICTURE", help="draw the fit: .png, .pdf, .svg or .html")
     ] = None,
     muscle: Annotated[
         Path | None, typer.Option("--muscle", metavar="FILE.toml", help="write the fitted muscle, for a case file")

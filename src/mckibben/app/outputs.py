@@ -9,9 +9,9 @@ from typing import Any
 
 import attrs
 
-__all__ = ["PICTURES", "PIXELS", "Outputs", "case_of", "finite", "numbers", "picture"]
+__all__ = ["PICTURES", "PIXELS", "Outputs", "case_of", "check_picture", "finite", "numbers", "picture"]
 
-PICTURES = {".png": "picture", ".pdf": "print", ".svg": "web"}
+PICTURES = {".png": "picture", ".pdf": "print", ".svg": "web", ".html": "interactive page"}
 PIXELS = 1200
 """Least width of a picture in pixels, for slides and screens."""
 TOML = {".toml": "a muscle for case files"}
@@ -37,6 +37,8 @@ class Outputs:
             if path is not None:
                 store.suffix_of(path, endings)
                 disk.check_target(path, self.force)
+        if self.picture is not None:
+            check_picture(self.picture)
 
     def write(self, found: Any, case: str) -> dict[str, str | None]:
         """Write it all; the names of the files."""
@@ -54,15 +56,30 @@ class Outputs:
         return {what: None if path is None else str(path) for what, path in places.items()}
 
 
-def picture(found: Any, suffix: str, pixels: int = 0) -> bytes:
-    """The natural picture of what a call gave, as the bytes of a file."""
+def check_picture(path: Path) -> None:
+    """SpecError if what draws a picture of this ending is missing."""
+    if path.suffix.lower() == ".html":
+        from mckibben.view import web
+
+        web.check(str(path))
+
+
+def picture(found: Any, suffix: str, pixels: int = 0, kind: str = "auto", data: Any = None) -> bytes:
+    """The natural picture of what a call gave, or one of another kind, as the bytes of a file."""
     import matplotlib
 
     matplotlib.use("Agg")  # draws to files only, without a window
+    if suffix == ".html":
+        from mckibben.spec.errors import SpecError
+        from mckibben.view.interactive import drawn
+
+        if kind != "auto":
+            raise SpecError("--kind", kind, "has no interactive picture", "leave it out, or write .png, .pdf or .svg")
+        return drawn(found, data).page()
     from mckibben.view import style
     from mckibben.view.plot import plot
 
-    return style.picture(plot(found), suffix[1:], pixels)
+    return style.picture(plot(found, kind, data), suffix[1:], pixels)
 
 
 def case_of(muscle: Any, lines: Iterable[str]) -> str:

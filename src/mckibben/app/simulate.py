@@ -36,7 +36,7 @@ def simulate(
         typer.Option("--output", "-o", metavar="FILE", help="save to motion.nc (everything) or motion.csv (a table)"),
     ] = None,
     picture: Annotated[
-        Path | None, typer.Option("--plot", metavar="PICTURE", help="draw the motion: .png, .pdf or .svg")
+        Path | None, typer.Option("--plot", metavar="PICTURE", help="draw the motion: .png, .pdf, .svg or .html")
     ] = None,
     force: Force = False,
     as_json: AsJson = False,

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
+
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
@@ -11,7 +13,7 @@ from mckibben.potential.chart import Chart
 from mckibben.units import show
 from mckibben.view import style
 
-__all__ = ["charted"]
+__all__ = ["OUTSIDE", "charted", "contraction", "grid", "levels", "words"]
 
 CURVES = 5
 """Pressures of which the force is drawn."""
@@ -32,34 +34,52 @@ def charted(chart: Chart) -> Figure:
     _range(figure, right, chart)
     for axes, letter in ((left, "a"), (right, "b")):
         style.panel(axes, letter)
-    name = f'Map of muscle "{chart.muscle.name}"' if chart.muscle.name else "Map of a muscle without a name"
-    error = f"force to {show(chart.force_error, 'N', 2)} ({100.0 * chart.error:.2g} % of the largest)"
-    style.heading(figure, f"{name}: {error} at {chart.data.sizes['check']} states that it was not made of")
+    style.heading(figure, words(chart))
     style.assumption_note(figure, chart.muscle)
     return figure
 
 
-def _contraction(chart: Chart, length: np.ndarray) -> np.ndarray:
+def words(chart: Chart) -> str:
+    """The heading: which muscle, and how far off the map is."""
+    name = f'Map of muscle "{chart.muscle.name}"' if chart.muscle.name else "Map of a muscle without a name"
+    error = f"force to {show(chart.force_error, 'N', 2)} ({100.0 * chart.error:.2g} % of the largest)"
+    return f"{name}: {error} at {chart.data.sizes['check']} states that it was not made of"
+
+
+def levels(chart: Chart) -> Iterator[tuple[float, np.ndarray, np.ndarray, np.ndarray]]:
+    """Some pressures [Pa] with the lengths [m] that are drawn: inside of the range, below it and above it."""
+    for P in np.linspace(*chart.pressures, CURVES).tolist():
+        low, high = (float(end) for end in chart.lengths(P))
+        room = BEYOND * (high - low)
+        yield P, np.linspace(low, high, FINE), np.linspace(low - room, low, 21), np.linspace(high, high + room, 21)
+
+
+def grid(chart: Chart, points: int = FINE, beyond: float = BEYOND) -> tuple[np.ndarray, np.ndarray]:
+    """Lengths [m] over the range and a part of it beyond, and pressures [Pa]."""
+    shortest, longest = (float(chart.data.attrs[f"asked_{end}"]) for end in ("shortest", "longest"))
+    room = beyond * (longest - shortest)
+    return np.linspace(shortest - room, longest + room, points), np.linspace(*chart.pressures, points)
+
+
+def contraction(chart: Chart, length: np.ndarray) -> np.ndarray:
+    """Contraction [%] at lengths [m]."""
     return 100.0 * (1.0 - length / chart.muscle.rest_length)
 
 
 def _curves(axes: Axes, chart: Chart) -> None:
     """Force over contraction, dotted where the map goes on outside of its range."""
     forces = []
-    for k, P in enumerate(np.linspace(*chart.pressures, CURVES)):
-        low, high = (float(end) for end in chart.lengths(float(P)))
-        inside, room = np.linspace(low, high, FINE), BEYOND * (high - low)
+    for k, (P, inside, low, high) in enumerate(levels(chart)):
         colour = style.LINES[k % len(style.LINES)]
         forces.append(chart.force(inside, P))
         if chart.rubs is not None:
             low_force, high_force = chart.branches(inside, P)
-            label = None if k else RUBS
-            axes.fill_between(_contraction(chart, inside), low_force, high_force, color=colour, alpha=0.3, lw=0.0,
-                              label=label)  # fmt: skip
-        axes.plot(_contraction(chart, inside), forces[-1], color=colour, lw=1.2, label=show(float(P), "Pa", 3))
-        for side, outside in enumerate((np.linspace(low - room, low, 21), np.linspace(high, high + room, 21))):
+            axes.fill_between(contraction(chart, inside), low_force, high_force, color=colour, alpha=0.3, lw=0.0,
+                              label=None if k else RUBS)  # fmt: skip
+        axes.plot(contraction(chart, inside), forces[-1], color=colour, lw=1.2, label=show(P, "Pa", 3))
+        for side, outside in enumerate((low, high)):
             label = OUTSIDE if k + side == 0 else None
-            axes.plot(_contraction(chart, outside), chart.force(outside, P), ":", color=colour, lw=1.0, label=label)
+            axes.plot(contraction(chart, outside), chart.force(outside, P), ":", color=colour, lw=1.0, label=label)
     lowest, highest = min(f.min() for f in forces), max(f.max() for f in forces)
     axes.set_ylim(lowest - 0.08 * (highest - lowest), highest + LEGEND * (highest - lowest))
     axes.axhline(0.0, color="0.5", lw=0.6)
@@ -73,11 +93,7 @@ def _curves(axes: Axes, chart: Chart) -> None:
 
 def _range(figure: Figure, axes: Axes, chart: Chart) -> None:
     """Contours of the force over length and pressure; hatched where the muscle has no state or none was asked for."""
-    about, (first, last) = chart.data.attrs, chart.pressures
-    shortest, longest = float(about["asked_shortest"]), float(about["asked_longest"])
-    room = BEYOND * (longest - shortest)
-    lengths = np.linspace(shortest - room, longest + room, FINE)
-    pressures = np.linspace(first, last, FINE)
+    lengths, pressures = grid(chart)
     values = chart.values(lengths[:, None], pressures)
     force = np.where(values.inside, values.force, np.nan).T
     size = float(np.nanmax(np.abs(force)))

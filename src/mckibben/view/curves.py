@@ -13,6 +13,7 @@ from matplotlib.figure import Figure
 from mckibben.results.result import Result
 from mckibben.results.variables import FIELDS, STEP
 from mckibben.view import style
+from mckibben.view.words import lost
 
 MARKS = {"unstable": ("x", style.VERMILLION), "inadmissible": ("s", style.ORANGE)}
 """Marker and colour of states that exist and are not stable."""
@@ -24,6 +25,8 @@ PARTS = (
     ("energy_twist", "twist", style.GREEN, "--"),
 )
 """Parts of the stored energy: variable, name in the legend, colour and line style."""
+PROTOCOL = (("force", style.BLUE), ("length", style.GREEN), ("pressure", style.VERMILLION))
+"""What is drawn of a protocol state by state, and its colour."""
 FIELD_NAMES = {"r": "radius r", "theta": "braid angle θ", "psi": "slope ψ", "fibre_tension": "fibre tension T"}
 """Short names of fields on axes; others go by their meaning."""
 
@@ -49,6 +52,16 @@ def driven(result: Result) -> str:
     return "contraction" if kind == "isobaric" else "state"
 
 
+def drawn(result: Result) -> str:
+    """What is drawn of a test that varies one thing."""
+    return "contraction" if result.test.kind in ("isotonic", "free-contraction") else "force"
+
+
+def starts(result: Result) -> list[float]:
+    """Where the steps of a protocol begin, between two states."""
+    return [float(k) + 0.5 for k in np.flatnonzero(np.diff(result.column("protocol_step")))]
+
+
 def against(result: Result) -> tuple[np.ndarray, str]:
     """Values and label of the axis that a result is drawn against."""
     name = driven(result)
@@ -63,7 +76,7 @@ def plot(result: Result) -> Figure:
     else:
         figure = style.new_figure()
         axes = figure.add_subplot()
-        y = "contraction" if kind in ("isotonic", "free-contraction") else "force"
+        y = drawn(result)
         x = driven(result)
         line(axes, result, x, y)
         axes.set(xlabel=label(x), ylabel=label(y))
@@ -79,7 +92,7 @@ def family(results: Mapping[str, Result]) -> Figure:
     first = next(iter(results.values()))
     figure = style.new_figure()
     axes = figure.add_subplot()
-    y = "contraction" if first.test.kind in ("isotonic", "free-contraction") else "force"
+    y = drawn(first)
     x = driven(first)
     for k, (name, result) in enumerate(results.items()):
         line(axes, result, x, y, color=style.LINES[k % len(style.LINES)], label=name)
@@ -111,14 +124,13 @@ def mark(axes: Axes, result: Result, xs: np.ndarray, ys: np.ndarray) -> None:
 
 def notes(figure: Figure, result: Result) -> None:
     """Below the picture: what was not reached and why, and what is assumed."""
-    lost = np.flatnonzero(~np.isfinite(np.asarray(result.data["length"].values, float)))
-    if len(lost):
-        reason = str(result.data["reason"].values[lost[0]])
-        if len(lost) == len(result):
+    said = lost(result)
+    if said:
+        if not np.isfinite(result.column("length")).any():
             for axes in figure.axes:
                 axes.set(xticks=[], yticks=[])
                 axes.text(0.5, 0.5, "no state was reached", transform=axes.transAxes, ha="center", fontsize=style.LABEL)
-        style.note(figure, f"{len(lost)} of {len(result)} states have no values, from state {lost[0]} on: {reason}.")
+        style.note(figure, said)
     style.assumption_note(figure, result.muscle)
 
 
@@ -142,14 +154,12 @@ def _plot_protocol(result: Result) -> Figure:
     grid = figure.add_gridspec(3, 2, width_ratios=(1.25, 1.0))
     parts = np.asarray(result.data["protocol_step"].values)
     first = None
-    for row, (name, colour) in enumerate(
-        (("force", style.BLUE), ("length", style.GREEN), ("pressure", style.VERMILLION))
-    ):
+    for row, (name, colour) in enumerate(PROTOCOL):
         axes = figure.add_subplot(grid[row, 0], sharex=first)
         first = first or axes
         line(axes, result, "state", name, color=colour)
         axes.set_ylabel(label(name))
-        for start in np.flatnonzero(np.diff(parts)) + 0.5:
+        for start in starts(result):
             axes.axvline(start, color=style.GREY, linewidth=0.6, linestyle=":")
         style.tidy(axes, "best")
         axes.tick_params(labelbottom=row == 2)

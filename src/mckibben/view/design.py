@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import textwrap
+from collections.abc import Iterator
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -11,12 +12,13 @@ from mckibben.results.design import Designed
 from mckibben.spec.wishes import text_of
 from mckibben.units import DISPLAY, from_si
 from mckibben.view import style
+from mckibben.view.words import title
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
-__all__ = ["designed"]
+__all__ = ["demands", "designed", "goal", "places", "room", "words"]
 
 WIDE = 42
 """Letters of a line of a limit's name."""
@@ -50,16 +52,8 @@ def _curves(axes: Axes, design: Designed) -> None:
     axes.plot(100.0 * data["contraction"].values, data["force"].values, linestyle="none", marker="o", markersize=3.2,
               color=style.BLACK, label="states asked for")  # fmt: skip
     shown = set()
-    for k, kind in enumerate(map(str, data["limit_kind"].values)):
-        at, least = float(data["limit_at"].values[k]), float(data["limit_sign"].values[k]) < 0.0
-        name = "at least" if least else "at most"
-        if kind == "force":
-            x, y, marker = 100.0 * float(data["limit_contraction"].values[k]), at, "^" if least else "v"
-        elif kind == "stroke":
-            x, y, marker = 100.0 * at, float(data["limit_force"].values[k]), ">" if least else "<"
-        else:
-            continue
-        label = None if name in shown else f"demanded, {name}"
+    for x, y, marker, name in demands(design):
+        label = None if name in shown else name
         shown.add(name)
         axes.plot([x], [y], linestyle="none", marker=marker, markersize=6.5, markerfacecolor="none",
                   markeredgewidth=1.2, color=style.VERMILLION, label=label, zorder=4)  # fmt: skip
@@ -69,19 +63,36 @@ def _curves(axes: Axes, design: Designed) -> None:
     style.tidy(axes, "best")
 
 
+def demands(design: Designed) -> Iterator[tuple[float, float, str, str]]:
+    """Each demand that is a point: contraction [%], force [N], the marker that points to what is allowed, its name."""
+    data = design.data
+    for k, kind in enumerate(map(str, data["limit_kind"].values)):
+        at, least = float(data["limit_at"].values[k]), float(data["limit_sign"].values[k]) < 0.0
+        name = f"demanded, at {'least' if least else 'most'}"
+        if kind == "force":
+            yield 100.0 * float(data["limit_contraction"].values[k]), at, "^" if least else "v", name
+        elif kind == "stroke":
+            yield 100.0 * at, float(data["limit_force"].values[k]), ">" if least else "<", name
+
+
+def room(design: Designed) -> tuple[np.ndarray, list[str]]:
+    """Room left in each limit [%], below 0 where it is missed, and the colours of the bars."""
+    left = -100.0 * design.data["limit_over"].values
+    colours = [style.VERMILLION if one < -1e-3 else style.ORANGE if active else style.BLUE
+               for one, active in zip(left, design.data["limit_active"].values.tolist(), strict=True)]  # fmt: skip
+    return left, colours
+
+
 def _room(axes: Axes, design: Designed) -> None:
     """How far every limit is from being reached, in per cent of it; what is missed goes to the other side."""
-    data = design.data
-    room = -100.0 * data["limit_over"].values
-    cut = np.clip(room, -FULL, FULL)
-    places = np.arange(len(room))[::-1]
-    colours = [style.VERMILLION if one < -1e-3 else style.ORANGE if active else style.BLUE
-               for one, active in zip(room, data["limit_active"].values.tolist(), strict=True)]  # fmt: skip
+    left, colours = room(design)
+    cut = np.clip(left, -FULL, FULL)
+    places = np.arange(len(left))[::-1]
     axes.barh(places, cut, height=0.5, color=colours)
     axes.axvline(0.0, color=style.BLACK, linewidth=0.8)
-    names = [textwrap.fill(str(name), WIDE) for name in data["limit"].values]
+    names = [textwrap.fill(str(name), WIDE) for name in design.data["limit"].values]
     axes.set_yticks(places, names)
-    for place, one, end, value in zip(places, room, cut, design.limits["value"], strict=True):
+    for place, one, end, value in zip(places, left, cut, design.limits["value"], strict=True):
         said = f" {value}" + (" (reached)" if abs(one) < 0.1 else "")
         axes.annotate(said, (max(end, 0.0), place), fontsize=style.NOTE, va="center")
     axes.set_xlim(min(-2.0, 1.15 * cut.min()), max(10.0, 1.45 * cut.max()))
@@ -101,19 +112,21 @@ def _fronted(design: Designed) -> Figure:
     return figure
 
 
-def _shown(design: Designed, goal: int, values: Any) -> tuple[Any, str]:
-    """Values of a goal in the unit that people see, and the label of their axis."""
-    unit, display = (str(design.data[f"goal_{kind}"].values[goal]) for kind in ("unit", "display"))
-    name = str(design.data["goal"].values[goal])
-    sense, _, measure = name.partition(" ")
+def goal(design: Designed, k: int, values: Any) -> tuple[Any, str, str]:
+    """Values of a goal in the unit that people see, the label of their axis, and which way is better."""
+    unit, display = (str(design.data[f"goal_{kind}"].values[k]) for kind in ("unit", "display"))
+    sense, _, measure = str(design.data["goal"].values[k]).partition(" ")
     better = "larger is better" if sense == "maximise" else "smaller is better"
     if display == "%":
-        shown, written = 100.0 * values, "%"
-    else:
-        written = display or DISPLAY.get(unit, unit)
-        shown = from_si(values, written)
-    label = textwrap.fill(style.axis_label(measure, written), 46)
-    return shown, f"{label}\n{better}"
+        return 100.0 * values, style.axis_label(measure, "%"), better
+    written = display or DISPLAY.get(unit, unit)
+    return from_si(values, written), style.axis_label(measure, written), better
+
+
+def _shown(design: Designed, k: int, values: Any) -> tuple[Any, str]:
+    """The same, the label in lines with which way is better below it."""
+    shown, label, better = goal(design, k, values)
+    return shown, f"{textwrap.fill(label, 46)}\n{better}"
 
 
 def _goals(figure: Figure, axes: Axes, design: Designed) -> None:
@@ -133,10 +146,9 @@ def _goals(figure: Figure, axes: Axes, design: Designed) -> None:
     style.tidy(axes, "best")
 
 
-def _free(axes: Axes, design: Designed) -> None:
-    """Where in its range each free number is along the front."""
+def places(design: Designed) -> Iterator[tuple[str, np.ndarray, str]]:
+    """Each free number along the front: its name with its range, where in it each design is [%], and a colour."""
     data = design.data
-    x, label = _shown(design, 0, data["front_goal"].values[:, 0])
     for k, name in enumerate(design.numbers):
         values = data["front_value"].values[:, k]
         low, high = (float(data[end].values[k]) for end in ("from", "to"))
@@ -144,11 +156,17 @@ def _free(axes: Axes, design: Designed) -> None:
             continue
         if not np.isfinite(low + high):
             low, high = float(values.min()), float(values.max())
-        part = (values - low) / ((high - low) or 1.0)
         unit = str(data["unit"].values[k])
         ends = [text_of(end, unit, digits=3) for end in (low, high)]
-        colour, said = style.LINES[k % len(style.LINES)], f"{name}, {ends[0]} to {ends[1]}"
-        axes.plot(x, 100.0 * part, linestyle="none", marker="o", markersize=2.6, color=colour, label=said)
+        part = (values - low) / ((high - low) or 1.0)
+        yield f"{name}, {ends[0]} to {ends[1]}", 100.0 * part, style.LINES[k % len(style.LINES)]
+
+
+def _free(axes: Axes, design: Designed) -> None:
+    """Where in its range each free number is along the front."""
+    x, label = _shown(design, 0, design.data["front_goal"].values[:, 0])
+    for said, part, colour in places(design):
+        axes.plot(x, part, linestyle="none", marker="o", markersize=2.6, color=colour, label=said)
     axes.set_xlabel(label.partition("\n")[0] if label.count("\n") < 2 else label.rpartition("\n")[0])
     axes.set_ylabel("Place in its range (%)")
     lines = len(axes.get_lines())
@@ -158,15 +176,20 @@ def _free(axes: Axes, design: Designed) -> None:
     axes.legend(fontsize=style.NOTE, frameon=False, loc="upper left", handlelength=1.2, labelspacing=0.3)
 
 
-def _said(figure: Figure, design: Designed) -> None:
+def words(design: Designed) -> tuple[str, list[str]]:
     """The heading, and the notes below."""
-    name = f'Muscle "{design.given.name}"' if design.given.name else "Muscle without a name"
     values = "; ".join(f"{one} {row['value']}" for one, row in design.table.iterrows())
     goals = zip(design.goals.items(), design.data["goal_unit"].values, design.data["goal_display"].values, strict=True)
-    said = "; ".join(f"{goal}: {text_of(value, str(unit), str(display))}" for (goal, value), unit, display in goals)
-    whole = f"{name}, designed to {said}".replace(" %", "\u00a0%").replace(" N", "\u00a0N")
-    style.heading(figure, whole)  # no line begins with a unit
-    style.note(figure, f"Best of {design.tried} designs: {values}.")
+    said = "; ".join(f"{name}: {text_of(value, str(unit), str(display))}" for (name, value), unit, display in goals)
+    notes = [f"Best of {design.tried} designs: {values}."]
     if not design.feasible:
-        style.note(figure, "The demands cannot be met together: this design misses them least.")
+        notes.append("The demands cannot be met together: this design misses them least.")
+    return f"{title(design.given)}, designed to {said}", notes
+
+
+def _said(figure: Figure, design: Designed) -> None:
+    heading, notes = words(design)
+    style.heading(figure, heading.replace(" %", "\u00a0%").replace(" N", "\u00a0N"))  # no line begins with a unit
+    for note in notes:
+        style.note(figure, note)
     style.assumption_note(figure, design.muscle)

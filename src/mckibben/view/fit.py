@@ -11,12 +11,13 @@ from mckibben.results.fit import Fitted
 from mckibben.spec.errors import SpecError
 from mckibben.view import style
 from mckibben.view.measured import MARKERS
+from mckibben.view.words import title
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
-__all__ = ["fitted"]
+__all__ = ["colours_of", "columns", "drivers", "fitted", "label", "of_test", "words"]
 
 FEW = len(style.LINES)
 """Tests that have a colour of their own; more take theirs from a sequence."""
@@ -36,10 +37,8 @@ def fitted(fit: Fitted) -> Figure:
     """Forces over contraction or pressure, whichever the tests vary; the residuals over it, and by the other one."""
     if not len(fit.residuals):
         raise SpecError("plot", allowed="the fit has no points")
-    shown = _columns(fit)
-    driver, other = ("pressure", "contraction") if _varies_pressure(fit) else ("contraction", "pressure")
-    tests = [str(name) for name in dict.fromkeys(fit.data["test"].values.tolist())]
-    colours = dict(zip(tests, _colours(len(tests)), strict=True))
+    shown, colours = columns(fit), colours_of(fit)
+    driver, other = drivers(fit)
     figure = style.new_figure(style.PAGE, 5.2)
     grid = figure.add_gridspec(2, 2, height_ratios=(1.35, 1.0))
     forces, residuals = figure.add_subplot(grid[0, :]), figure.add_subplot(grid[1, 0])
@@ -53,11 +52,11 @@ def fitted(fit: Fitted) -> Figure:
     _legend(figure, fit, colours)
     for axes, letter in ((forces, "a"), (residuals, "b"), (strips, "c")):
         style.panel(axes, letter)
-    _said(figure, fit, len(tests))
+    _said(figure, fit)
     return figure
 
 
-def _columns(fit: Fitted) -> dict[str, Any]:
+def columns(fit: Fitted) -> dict[str, Any]:
     """What is drawn, in the units that people see."""
     data = fit.data
     return {
@@ -67,7 +66,7 @@ def _columns(fit: Fitted) -> dict[str, Any]:
     }  # fmt: skip
 
 
-def _rows(fit: Fitted, name: str) -> np.ndarray:
+def of_test(fit: Fitted, name: str) -> np.ndarray:
     return np.flatnonzero(fit.data["test"].values == name)
 
 
@@ -77,15 +76,26 @@ def _varies_pressure(fit: Fitted) -> bool:
     spans = {name: 0.0 for name in parts}
     for test in dict.fromkeys(fit.data["test"].values.tolist()):
         for name, values in parts.items():
-            some = values[_rows(fit, test)]
+            some = values[of_test(fit, test)]
             spans[name] += float(np.ptp(some)) / max(float(np.abs(some).max()), 1e-12)
     return spans["pressure"] > spans["length"]
+
+
+def drivers(fit: Fitted) -> tuple[str, str]:
+    """What the tests vary, pressure or contraction, and the other one."""
+    return ("pressure", "contraction") if _varies_pressure(fit) else ("contraction", "pressure")
+
+
+def colours_of(fit: Fitted) -> dict[str, Any]:
+    """The tests with their colours."""
+    tests = [str(name) for name in dict.fromkeys(fit.data["test"].values.tolist())]
+    return dict(zip(tests, _colours(len(tests)), strict=True))
 
 
 def _few_levels(fit: Fitted, values: np.ndarray) -> bool:
     """Whether every test holds this quantity."""
     slack = LEVEL * float(np.abs(values).max())
-    return all(np.ptp(values[_rows(fit, test)]) <= slack for test in set(fit.data["test"].values.tolist()))
+    return all(np.ptp(values[of_test(fit, test)]) <= slack for test in set(fit.data["test"].values.tolist()))
 
 
 def _colours(count: int) -> list[Any]:
@@ -94,7 +104,7 @@ def _colours(count: int) -> list[Any]:
     return [tuple(colour) for colour in colormaps[style.SEQUENCE](np.linspace(0.0, 0.92, count))]
 
 
-def _label(name: str) -> str:
+def label(name: str) -> str:
     return style.axis_label(*{"contraction": (name, "%"), "pressure": (name, "Pa")}.get(name, (name, "N")))
 
 
@@ -109,24 +119,24 @@ def _points(axes: Axes, fit: Fitted, rows: np.ndarray, x: np.ndarray, y: np.ndar
 
 def _forces(axes: Axes, fit: Fitted, shown: dict[str, Any], driver: str, colours: dict[str, Any]) -> None:
     for test, colour in colours.items():
-        rows = _rows(fit, test)
+        rows = of_test(fit, test)
         _points(axes, fit, rows, shown[driver][rows], shown["force"][rows], colour)
         branches = fit.data["branch"].values[rows]
         for branch in dict.fromkeys(branches.tolist()):
             some = rows[branches == branch]
             some = some[np.argsort(shown[driver][some], kind="stable")]
             axes.plot(shown[driver][some], shown["predicted"][some], color=colour, linewidth=1.0)
-    axes.set_xlabel(_label(driver))
-    axes.set_ylabel(_label("force"))
+    axes.set_xlabel(label(driver))
+    axes.set_ylabel(label("force"))
     style.tidy(axes)
 
 
 def _residuals(axes: Axes, fit: Fitted, shown: dict[str, Any], across: str, colours: dict[str, Any]) -> None:
     for test, colour in colours.items():
-        rows = _rows(fit, test)
+        rows = of_test(fit, test)
         _points(axes, fit, rows, shown[across][rows], shown["residual"][rows], colour)
     axes.axhline(0.0, color=style.GREY, linewidth=0.6)
-    axes.set_xlabel(_label(across))
+    axes.set_xlabel(label(across))
     axes.set_ylabel("Model less measured (N)")
     style.tidy(axes)
 
@@ -134,7 +144,7 @@ def _residuals(axes: Axes, fit: Fitted, shown: dict[str, Any], across: str, colo
 def _strips(axes: Axes, fit: Fitted, colours: dict[str, Any]) -> None:
     """Residuals test by test, beside each other in the order of the points, with the mean of each."""
     for k, (test, colour) in enumerate(colours.items()):
-        rows = _rows(fit, test)
+        rows = of_test(fit, test)
         residuals = fit.residuals[rows]
         x = k + (np.linspace(-JITTER, JITTER, len(rows)) if len(rows) > 1 else np.zeros(1))
         _points(axes, fit, rows, x, residuals, colour)
@@ -173,24 +183,30 @@ def _legend(figure: Figure, fit: Fitted, colours: dict[str, Any]) -> None:
                   handlelength=1.6)  # fmt: skip
 
 
-def _said(figure: Figure, fit: Fitted, tests: int) -> None:
+def words(fit: Fitted) -> tuple[str, list[str]]:
     """The heading, and the notes below."""
-    name = f'Muscle "{fit.muscle.name}"' if fit.muscle.name else "Muscle without a name"
-    name = f"{len(fit.muscles)} muscles" if fit.further else name
+    tests = len(set(fit.data["test"].values.tolist()))
+    name = f"{len(fit.muscles)} muscles" if fit.further else title(fit.muscle)
     many = f"{len(fit.residuals)} points of {tests} test{'s' if tests != 1 else ''}"
     share = fit.share(fit.largest)
     worst = f"{fit.largest:.3g} N" + ("" if np.isnan(share) else f" ({share:.2g} %)")
-    said = f"{name}, {many}: {fit.goodness}, largest difference {worst}"
-    style.heading(figure, said.replace(" %", "\u00a0%").replace(" N", "\u00a0N"))  # no line begins with a unit
-    style.note(figure, f"Measured: {fit.data.attrs['source']}.")
+    notes = [f"Measured: {fit.data.attrs['source']}."]
     found = [f"{name} {_with_error(row['value'], row['error'])}"
              for name, row in fit.table.iterrows() if name not in fit.undetermined]  # fmt: skip
     if found:
-        style.note(figure, f"Fitted (± standard error): {'; '.join(found)}.")
+        notes.append(f"Fitted (± standard error): {'; '.join(found)}.")
     if fit.undetermined:
-        style.note(figure, f"Not determined by these data: {', '.join(fit.undetermined)}.")
+        notes.append(f"Not determined by these data: {', '.join(fit.undetermined)}.")
     if not fit.converged:
-        style.note(figure, "The search was ended before it had settled.")
+        notes.append("The search was ended before it had settled.")
+    return f"{name}, {many}: {fit.goodness}, largest difference {worst}", notes
+
+
+def _said(figure: Figure, fit: Fitted) -> None:
+    heading, notes = words(fit)
+    style.heading(figure, heading.replace(" %", "\u00a0%").replace(" N", "\u00a0N"))  # no line begins with a unit
+    for note in notes:
+        style.note(figure, note)
     style.assumption_note(figure, fit.muscle)
 
 

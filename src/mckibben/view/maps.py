@@ -22,7 +22,7 @@ def region(limits: xr.Dataset) -> Figure:
     axes = figure.add_subplot()
     pressure = style.shown(limits["pressure"].values, "Pa")
     shortest, longest = (style.shown(limits[name].values, "m") for name in ("shortest", "longest"))
-    muscle = _muscle(limits)
+    muscle = muscle_of(limits)
     known, made = np.isfinite(longest), np.nan if muscle is None else style.shown(muscle.rest_length, "m")
     beyond = np.where(known, longest, ENDLESS * made)  # fibres that stretch set no limit
     label = "admissible and stable" + ("" if known.any() else ", with no longest length")
@@ -56,7 +56,7 @@ def force_map(forces: xr.Dataset) -> Figure:
     else:
         _contours(figure, axes, length, pressure, force)
     style.tidy(axes)
-    muscle = _muscle(forces)
+    muscle = muscle_of(forces)
     if muscle is not None:
         style.assumption_note(figure, muscle)
     return figure
@@ -79,7 +79,7 @@ def _line(axes: Axes, length: np.ndarray, pressure: np.ndarray, force: np.ndarra
     axes.set(xlabel=name, ylabel=style.axis_label("force", "N"))
 
 
-def _muscle(data: xr.Dataset) -> Muscle | None:
+def muscle_of(data: xr.Dataset) -> Muscle | None:
     """The muscle of a Dataset; None where a file cannot hold it (a law of the user's own)."""
     try:
         return muscle_from_mapping(tomllib.loads(data.attrs["muscle"]))

@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from typing import Any
 
+import attrs
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
@@ -14,13 +15,48 @@ from mckibben.data.compare import Comparison, axes_of, compare, matching, values
 from mckibben.data.values import Data
 from mckibben.results.result import Result
 from mckibben.spec.errors import SpecError
+from mckibben.units import show
 from mckibben.view import style
 
-__all__ = ["draw", "overlay", "say"]
+__all__ = ["Points", "draw", "overlay", "points", "said", "say"]
 
 MARKERS = {LOADING: "o", UNLOADING: "v", UNKNOWN: "s"}
 MOST = 300
 """Points of a branch that are drawn; of more, local means. Differences are of all points."""
+
+
+@attrs.frozen(eq=False)
+class Points:
+    """Measured points that belong to a curve, in the units of its axes."""
+
+    x: np.ndarray
+    y: np.ndarray
+    data: Data  #: the same points
+    lengths: np.ndarray  #: [m]
+
+    def branches(self) -> Iterator[tuple[str, str, np.ndarray]]:
+        """Each branch that is there: its name, its marker, and which points are of it."""
+        for branch, marker in MARKERS.items():
+            of = self.data.branches == branch
+            if of.any():
+                yield branch, marker, of
+
+    def told(self) -> list[list[tuple[str, str]]]:
+        """What is known of each point: names and values for people."""
+        data, made = self.data, []
+        for k, (length, pressure, force) in enumerate(zip(self.lengths, data.pressure, data.force, strict=True)):
+            values = (("length", length, "m"), ("pressure", pressure, "Pa"), ("force", force, "N"))
+            numbers = [(name, show(float(value), unit, 5)) for name, value, unit in values]
+            made.append([("test", data.tests[int(data.which[k])]), *numbers])
+        return made
+
+
+def points(result: Result, data: Data) -> Points:
+    """The points at which the bench held what the test held; SpecError where there are none."""
+    picked = matching(result, data).decimated(MOST)
+    across, what, _ = axes_of(result)
+    x, y = (_shown(values_of(picked, result, of), of) for of in (across, what))
+    return Points(x, y, picked, values_of(picked, result, "length"))
 
 
 def draw(
@@ -48,11 +84,9 @@ def overlay(figure: Figure, results: Mapping[str, Result], data: Data) -> Figure
         except SpecError as error:  # of a family, the bench may lack one
             trouble = error
             continue
-        picked = matching(result, data).decimated(MOST)
-        across, what, _ = axes_of(result)
-        x, y = (_shown(values_of(picked, result, of), of) for of in (across, what))
+        of = points(result, data)
         colour = style.LINES[k % len(style.LINES)] if len(results) > 1 else style.GREEN
-        draw(axes, x, y, picked.branches, colour, "measured" if len(results) == 1 else "")
+        draw(axes, of.x, of.y, of.data.branches, colour, "measured" if len(results) == 1 else "")
     if not found:
         assert trouble is not None
         raise trouble
@@ -72,7 +106,12 @@ def overlay(figure: Figure, results: Mapping[str, Result], data: Data) -> Figure
 
 def say(figure: Figure, start: str, data: Data, comparison: Comparison) -> None:
     """Note below the figure how far a curve is from the points."""
-    style.note(figure, f"{start} less measured ({data.source}): {comparison}.")
+    style.note(figure, said(start, data, comparison))
+
+
+def said(start: str, data: Data, comparison: Comparison) -> str:
+    """How far a curve is from the points, in a sentence."""
+    return f"{start} less measured ({data.source}): {comparison}."
 
 
 def _shown(values: np.ndarray, name: str) -> Any:

@@ -13,8 +13,9 @@ from mckibben.spec.controls import PID
 from mckibben.spec.errors import SpecError
 from mckibben.units import from_si
 from mckibben.view import style
+from mckibben.view.words import sentence
 
-__all__ = ["moved"]
+__all__ = ["MANY", "energies", "moved", "names", "outside", "target", "words"]
 
 WIDE, TALL = style.PAGE, 4.6
 MANY = 40
@@ -39,10 +40,22 @@ def moved(motion: Motion) -> Figure:
         axes.set_xlabel("Time (s)")
     for axes, letter in zip(panels.ravel(), "abcd", strict=True):
         style.panel(axes, letter)
-    style.heading(figure, f"Motion of {motion.data.attrs['title']}; {motion.consumed:.3g} normal litres of air")
-    notes = [*((f"not complete: {motion.reason}",) if motion.reason else ()), *motion.notes]
-    style.note(figure, " ".join(f"{line[0].upper()}{line[1:]}." for line in notes))
+    heading, notes = words(motion)
+    style.heading(figure, heading)
+    style.note(figure, " ".join(notes))
     return figure
+
+
+def words(motion: Motion) -> tuple[str, list[str]]:
+    """The heading, and the notes below."""
+    notes = [*((f"not complete: {motion.reason}",) if motion.reason else ()), *motion.notes]
+    heading = f"Motion of {motion.data.attrs['title']}; {motion.consumed:.3g} normal litres of air"
+    return heading, [sentence(line) for line in notes]
+
+
+def outside(motion: Motion) -> np.ndarray:
+    """Whether a muscle is outside of the range of its map, at each time."""
+    return np.asarray(~motion.of("inside").reshape(len(motion.time), -1).all(axis=1))
 
 
 def _moves(axes: Axes, motion: Motion) -> None:
@@ -56,26 +69,32 @@ def _moves(axes: Axes, motion: Motion) -> None:
     _target(axes, motion, "length", "m")
 
 
-def _target(axes: Axes, motion: Motion, of: str, unit: str) -> None:
-    """The target of a PID controller of what is drawn."""
+def target(motion: Motion, of: str) -> np.ndarray | None:
+    """The target [SI] over time of a PID controller of what is drawn; None where there is none."""
     try:
         command = motion.rig.command
     except SpecError:  # a Python function, which a motion does not hold
-        return
-    if isinstance(command, PID) and str(command.of) == of:
-        wanted = np.array([command.target(float(t)) for t in motion.time])
-        axes.plot(
-            motion.time, style.shown(wanted, unit), color=style.GREY, linestyle="--", linewidth=1.0, label="target"
-        )
+        return None
+    if not (isinstance(command, PID) and str(command.of) == of):
+        return None
+    return np.array([command.target(float(t)) for t in motion.time])
 
 
-def _names(motion: Motion) -> Sequence[str]:
+def _target(axes: Axes, motion: Motion, of: str, unit: str) -> None:
+    wanted = target(motion, of)
+    if wanted is not None:
+        shown = style.shown(wanted, unit)
+        axes.plot(motion.time, shown, color=style.GREY, linestyle="--", linewidth=1.0, label="target")
+
+
+def names(motion: Motion) -> Sequence[str]:
+    """Names of the muscles; one without a name where there is one."""
     return [str(one) for one in motion.data["muscle"].values] if motion.several else [""]
 
 
 def _lines(axes: Axes, motion: Motion, name: str, unit: str) -> None:
     values = motion.of(name).reshape(len(motion.time), -1)
-    for k, label in enumerate(_names(motion)):
+    for k, label in enumerate(names(motion)):
         axes.plot(
             motion.time, style.shown(values[:, k], unit), color=style.LINES[k], linewidth=1.2, label=label or None
         )
@@ -100,16 +119,20 @@ def _commands(axes: Axes, motion: Motion) -> None:
     axes.set_ylim(low - 0.35 * (high - low), high)
 
 
+def energies(motion: Motion) -> dict[str, tuple[np.ndarray, str]]:
+    """Energies [J] over time that are not zero throughout, by their names, with their colours."""
+    work = motion.of("work").reshape(len(motion.time), -1).sum(axis=1)
+    all_of = {"work on the load": (work, style.BLUE), "lost": (motion.of("lost"), style.VERMILLION),
+              "kinetic": (motion.of("kinetic"), style.GREEN)}  # fmt: skip
+    return {name: (values, colour) for name, (values, colour) in all_of.items() if np.abs(values).max() > 0.0}
+
+
 def _energies(axes: Axes, motion: Motion) -> None:
     axes.plot(motion.time, motion.of("consumed"), color=style.BLACK, linewidth=1.2, label="air taken (L)")
     axes.set_ylabel("Air taken (normal L)")
     other = axes.twinx()
-    work = motion.of("work").reshape(len(motion.time), -1).sum(axis=1)
-    shown = {"work on the load": (work, style.BLUE), "lost": (motion.of("lost"), style.VERMILLION),
-             "kinetic": (motion.of("kinetic"), style.GREEN)}  # fmt: skip
-    for label, (values, colour) in shown.items():
-        if np.abs(values).max() > 0.0:
-            other.plot(motion.time, from_si(values, "J"), color=colour, linewidth=1.0, label=label)
+    for label, (values, colour) in energies(motion).items():
+        other.plot(motion.time, from_si(values, "J"), color=colour, linewidth=1.0, label=label)
     lines, labels = axes.get_legend_handles_labels()
     more, further = other.get_legend_handles_labels()
     other.set_ylabel("Energy (J)", fontsize=style.LABEL)
@@ -124,7 +147,7 @@ def _energies(axes: Axes, motion: Motion) -> None:
 
 def _marks(axes: Axes, motion: Motion) -> None:
     """Where the map is outside of its range, and when something happened."""
-    out = ~motion.of("inside").reshape(len(motion.time), -1).all(axis=1)
+    out = outside(motion)
     if out.any():
         axes.fill_between(motion.time, 0.0, 1.0, where=out.tolist(), color="0.9", transform=axes.get_xaxis_transform(),
                           zorder=0, linewidth=0.0)  # fmt: skip

@@ -18,9 +18,7 @@ from mckibben.results.motionfit import MotionFit
 from mckibben.results.result import Result, State
 from mckibben.results.sensitivity import Sensitivity
 from mckibben.results.tolerances import Tolerances
-from mckibben.spec import BlockedForce, FreeContraction, Path, Protocol
 from mckibben.spec.errors import SpecError, nearest
-from mckibben.units import show
 from mckibben.view import curves, maps, style
 from mckibben.view.bode import answered
 from mckibben.view.chart import charted
@@ -32,6 +30,7 @@ from mckibben.view.motion import moved
 from mckibben.view.motionfit import followed
 from mckibben.view.tolerances import scatter
 from mckibben.view.tornado import tornado
+from mckibben.view.words import headline
 
 __all__ = ["KINDS", "plot"]
 
@@ -87,6 +86,8 @@ def plot(result: Any, kind: str = "auto", data: Any = None) -> Figure:
     >>> mk.plot(curve, kind="tension").axes[0].get_ylabel()
     'Fibre tension T (N)'
     """
+    if isinstance(kind, str) and kind.lower().endswith(".html"):
+        raise SpecError("plot.kind", kind, "is a file's name", f'mk.interactive(result, "{kind}") writes a page')
     if not isinstance(kind, str) or kind not in KINDS:
         raise SpecError("plot.kind", kind, "is unknown", nearest(str(kind), KINDS))
     if data is not None:
@@ -124,39 +125,24 @@ def _family(results: Mapping[Any, Any], kind: str) -> Figure:
     """Several results of one kind of test in one picture."""
     if kind != "auto":
         raise SpecError("plot.kind", kind, "is for one result", "leave it out")
+    same_kind(results)
+    return curves.family({str(name): result for name, result in results.items()})
+
+
+def same_kind(results: Mapping[Any, Any]) -> None:
+    """SpecError unless these are results of one kind of test by their names."""
     wrong = [name for name, result in results.items() if not isinstance(result, Result)]
     if wrong or not results:
         raise SpecError("plot", wrong[0] if wrong else "{}", "must hold results of run by their names")
     kinds = list(dict.fromkeys(result.test.kind for result in results.values()))
     if len(kinds) > 1:
         raise SpecError("plot", ", ".join(kinds), "are tests of several kinds", "draw those of one kind together")
-    return curves.family({str(name): result for name, result in results.items()})
 
 
 def _headed(figure: Figure, result: Result) -> Figure:
     """The figure with a line that names the muscle, the test and what is held."""
-    test = result.test
-    held = _held(test)
-    if isinstance(test, Protocol):
-        steps = (", ".join(f"{name} {path}" for name, path in _paths(step).items()) for step in test.steps)
-        held = "; ".join(f"{k} {said}" for k, said in enumerate(steps, 1))
-    if isinstance(test, BlockedForce) and test.length is None:
-        held = f"length {show(result.muscle.rest_length, 'm')}"
-    if isinstance(test, FreeContraction):
-        held = "force 0 N"
-    name = f'Muscle "{result.muscle.name}"' if result.muscle.name else "Muscle without a name"
-    style.heading(figure, f"{name}: {test.kind} test" + (f", {held}" if held else ""))
+    style.heading(figure, headline(result))
     return figure
-
-
-def _paths(test: Any) -> dict[str, Path]:
-    """What a test controls, by name."""
-    paths = ((name, getattr(test, name, None)) for name in ("length", "force", "pressure", "volume"))
-    return {path.called(name): path for name, path in paths if path is not None}
-
-
-def _held(test: Any) -> str:
-    return ", ".join(f"{name} {path}" for name, path in _paths(test).items() if not path.varies)
 
 
 def _of_dataset(data: Any) -> Callable[[Any], Figure]:
