@@ -22,6 +22,8 @@ from mckibben.potential.rubbing import Rubbing, Rubs, rubbing, rubbing_at
 from mckibben.solver.bench import Bench
 from mckibben.solver.held import Held
 from mckibben.spec.declared import evolved
+from mckibben.units import show
+from mckibben.view.interactive import drawn
 
 pytestmark = pytest.mark.motion
 
@@ -309,3 +311,15 @@ def test_a_frequency_response_is_that_without_friction() -> None:
     rig = mk.Rig(muscle=MUSCLE, load=mk.Load(mass="2 kg", gravity=0.0), **PARTS)
     found = mk.bode(rig, frequency="1 Hz", chart=Spring(even(0.5, 1e6)))
     assert found.natural_frequency == pytest.approx(math.sqrt(800.0 / 2.0) / (2.0 * math.pi), rel=1e-6)
+
+
+def test_the_interactive_picture_shows_the_branches(chart: mk.Chart) -> None:
+    pytest.importorskip("plotly")
+    lines = drawn(chart).figure.data
+    low, high = [line for line in lines if line.name == "with friction"][-2:]  # of the highest pressure
+    length = chart.muscle.rest_length * (1.0 - 0.01 * low.x)
+    for line, force in zip((low, high), chart.branches(length, chart.pressures[1]), strict=True):
+        assert_allclose(line.y, force, rtol=1e-9, atol=1e-9)
+    (curve,) = (line for line in lines if line.name == show(chart.pressures[1], "Pa", 3))
+    told = curve.text[0].split("<br>")[-1]
+    assert told == f"with friction: ± {show(float(chart.friction(length[0], chart.pressures[1])), 'N', 3)}"

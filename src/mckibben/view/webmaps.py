@@ -11,7 +11,7 @@ from mckibben.potential.chart import Chart
 from mckibben.spec.errors import SpecError
 from mckibben.units import from_si, show
 from mckibben.view import style, web
-from mckibben.view.chart import OUTSIDE, contraction, grid, levels, words
+from mckibben.view.chart import OUTSIDE, RUBS, contraction, grid, levels, words
 from mckibben.view.maps import muscle_of
 from mckibben.view.words import sentence, title
 
@@ -34,6 +34,8 @@ def charted(chart: Chart) -> web.Web:
     figure = web.panels(1, 2, column_widths=[0.46, 0.54], horizontal_spacing=0.1)
     for k, (P, inside, low, high) in enumerate(levels(chart)):
         colour, name = style.LINES[k % len(style.LINES)], show(P, "Pa", 3)
+        if chart.rubs is not None:
+            _band(figure, chart, P, inside, colour, not k)
         _curve(figure, chart, P, inside, name, line={"color": colour, "width": 2})
         for side, outside in enumerate((low, high)):
             _curve(figure, chart, P, outside, OUTSIDE, line={"color": colour, "width": 1.5, "dash": "dot"},
@@ -89,9 +91,20 @@ def _curve(figure: Any, chart: Chart, P: float, lengths: np.ndarray, name: str, 
         "volume": [show(x, "m^3", 5) for x in values.volume],
         "stiffness": [show(x, TOLD["stiffness"][1], 5) for x in values.stiffness],
     }  # fmt: skip
+    if chart.rubs is not None:
+        columns[RUBS] = [f"± {show(x, 'N', 3)}" for x in chart.friction(lengths, P)]
     figure.add_scatter(
         **web.dots(short, values.force, web.rows_of(columns), mode="lines", name=name, **options), row=1, col=1
     )
+
+
+def _band(figure: Any, chart: Chart, P: float, lengths: np.ndarray, colour: str, first: bool) -> None:
+    """What lies between the branches of a muscle with friction at one pressure."""
+    short = contraction(chart, lengths)
+    for force, fill in zip(chart.branches(lengths, P), (None, "tonexty"), strict=True):
+        line = web.dots(short, force, None, mode="lines", line={"color": colour, "width": 0}, fill=fill)
+        shown = {"legendgroup": RUBS, "legendrank": 1999, "showlegend": first and fill is not None}
+        figure.add_scatter(**line, **shown, name=RUBS, opacity=0.3, row=1, col=1)
 
 
 def _contours(
