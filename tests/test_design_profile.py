@@ -32,7 +32,7 @@ def programmed(*angles: float, **others: Any) -> mk.Muscle:
 
 
 WAISTED = programmed(50.0, 44.0, mirrored=True)
-LOPSIDED = programmed(46.0, 50.0)
+LOPSIDED = STEEP.replace("end_radii", ["12.5 mm", "11.5 mm"])
 
 
 def worth(measures: list[Any], muscle: mk.Muscle, tolerance: float = 1e-5, **angles: np.ndarray) -> list[np.ndarray]:
@@ -159,8 +159,9 @@ def test_one_range_for_all_angles() -> None:
     space = space_of(WAISTED, {BOTH: "46 deg to 54 deg", "braid.angle": "40 deg to 44 deg"})
     assert [axis.name for axis in space.axes] == [*ANGLES, "braid.angle"]
     np.testing.assert_allclose(space.muscle_at(np.full(3, 0.5)).braid.angles, np.radians([42.0, 50.0, 50.0]))
-    one_of = space_of(WAISTED, {"braid.angle_profile": [WAISTED.braid.angle_profile, LOPSIDED.braid.angle_profile]})
-    assert one_of.muscle_at(np.ones(1)) == LOPSIDED
+    other = programmed(46.0, 50.0)
+    one_of = space_of(WAISTED, {"braid.angle_profile": [WAISTED.braid.angle_profile, other.braid.angle_profile]})
+    assert one_of.muscle_at(np.ones(1)).braid == other.braid
     with pytest.raises(mk.SpecError, match=r"free.braid.angle_profile.angle\[1\].*is given twice"):
         space_of(WAISTED, {BOTH: "46 deg to 54 deg", f"{BOTH}[1]": "40 deg to 44 deg"})
     with pytest.raises(mk.SpecError, match=r"free.braid.angle_profile.angle"):
