@@ -18,8 +18,9 @@ _PUBLIC = {
     ),
     "mckibben.spec.sleeve": ("centre_radius",),
     "mckibben.spec.measures": (
-        "AirVolume", "CurveMiss", "ForceAt", "Mass", "PressureFor", "Stroke",
+        "AirVolume", "ForceAt", "Mass", "PressureFor", "Stroke",
     ),
+    "mckibben.spec.targets": ("CurveMiss", "ProfileMiss"),
     "mckibben.spec.ranged": (
         "Diameter", "FibreSafety", "FibreTension", "ForceVariation", "JammingMargin", "StabilityMargin", "Work",
     ),

@@ -55,10 +55,11 @@ def design(
         muscle: what is not free is taken from here.
         free: names of fields and where they are searched: a range, "55 deg to 70 deg"; a range of whole numbers for a
             count, "24 to 96"; or a list to choose from, of numbers, words or parts, ["6 mm", "8 mm"] or
-            [mk.NeoHookean(c1="0.1 MPa"), mk.NeoHookean(c1="0.3 MPa")].
+            [mk.NeoHookean(c1="0.1 MPa"), mk.NeoHookean(c1="0.3 MPa")]. A range of a list of numbers, such as
+            "braid.angle_profile.angle", is that of each of them; "braid.angle_profile.angle[1]" is one.
         objective: `Maximise` or `Minimise` of a measure; several for a front. Measures: `ForceAt`, `Stroke`,
-            `PressureFor`, `Work`, `ForceVariation`, `CurveMiss`, `Diameter`, `FibreTension`, `FibreSafety`,
-            `JammingMargin`, `StabilityMargin`, `AirVolume`, `Mass`.
+            `PressureFor`, `Work`, `ForceVariation`, `CurveMiss`, `ProfileMiss`, `Diameter`, `FibreTension`,
+            `FibreSafety`, `JammingMargin`, `StabilityMargin`, `AirVolume`, `Mass`.
         subject_to: demands, made by comparing measures: [mk.Stroke(pressure="4 bar") >= "20 %"].
         designs: how many are tried; 2000, for a front 6000, where it is left out.
         seed: of what is random. The same one gives the same answer.
@@ -237,7 +238,10 @@ def _refuse_nothing(tried: Tried) -> None:
     """SpecError where not one design had its states."""
     if (tried.worth.over >= LOST).any(axis=1).all():
         said = f"none of {len(tried)} designs has a stable state wherever it is asked for one"
-        raise SpecError("free", allowed=said, advice="ask for less contraction, or give other ranges")
+        advice = "ask for less contraction, or give other ranges"
+        if any(getattr(measure, "z", None) for measure in tried.task.measures):
+            advice += "; a wanted profile must end within the muscle: give its places by at, as shares of the length"
+        raise SpecError("free", allowed=said, advice=advice)
 
 
 def _blocking(fine: Tried, best: int, coarse: Tried) -> list[str]:

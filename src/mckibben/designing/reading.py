@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from typing import Any
 
 import jax
@@ -12,10 +12,11 @@ from mckibben.designing.places import By, Place
 from mckibben.designing.states import AtPlaces
 from mckibben.measure.bow import left_to_bow
 from mckibben.measure.mass import mass_of, over_fibres
+from mckibben.measure.meridian import LINE, radii_at
 from mckibben.model.jamming import across
 from mckibben.model.parameters import numbers
 from mckibben.spec import Muscle, SpecError
-from mckibben.spec.measures import AirVolume, CurveMiss, ForceAt, Mass, PressureFor, Stroke
+from mckibben.spec.measures import AirVolume, ForceAt, Mass, PressureFor, Stroke
 from mckibben.spec.ranged import (
     Diameter,
     FibreSafety,
@@ -25,9 +26,10 @@ from mckibben.spec.ranged import (
     StabilityMargin,
     Work,
 )  # fmt: skip
+from mckibben.spec.targets import CurveMiss, ProfileMiss
 from mckibben.spec.wishes import Measure
 
-__all__ = ["check_measure", "places_of", "value_of"]
+__all__ = ["check_measure", "lined_of", "places_of", "value_of"]
 
 EXTREMES = (0.0, 1.0 / 3.0, 2.0 / 3.0, 1.0)
 """Where in a range the largest radius, tension or room is looked for: they change smoothly, and mostly one way."""
@@ -78,7 +80,14 @@ def places_of(measure: Measure) -> list[Place]:
         return _within(measure, np.linspace(0.0, 1.0, EVEN))
     if isinstance(measure, CurveMiss):
         return [Place(measure.pressure, By.CONTRACTION, at) for at in measure.contractions]
+    if isinstance(measure, ProfileMiss):
+        return [_one(measure, Place(measure.pressure, By.FORCE, measure.force or 0.0))]
     return [] if isinstance(measure, Mass) else _within(measure, EXTREMES)
+
+
+def lined_of(measures: Iterable[Measure]) -> set[Place]:
+    """The states of which measures need the meridian."""
+    return {place for measure in measures if isinstance(measure, ProfileMiss) for place in places_of(measure)}
 
 
 def value_of(measure: Measure, seen: AtPlaces) -> np.ndarray:
@@ -119,6 +128,12 @@ def _variation(measure: ForceVariation, seen: AtPlaces, places: list[Place]) -> 
 def _miss(measure: CurveMiss, seen: AtPlaces, places: list[Place]) -> np.ndarray:
     off = seen.over(places) - np.array(measure.forces)
     return np.asarray(np.sqrt(np.mean(off**2, axis=1)))
+
+
+def _off_profile(measure: ProfileMiss, seen: AtPlaces, places: list[Place]) -> np.ndarray:
+    lines, at = zip(*(seen.at(places[0], name) for name in LINE), strict=True), np.array(measure.places)
+    radii = [radii_at(psi, r, z, at if measure.at is None else at * z[-1]) for psi, r, z in lines]
+    return np.asarray(np.sqrt(np.mean((np.array(radii) - np.array(measure.r)) ** 2, axis=1)))
 
 
 def _diameter(measure: Diameter, seen: AtPlaces, places: list[Place]) -> np.ndarray:
@@ -164,8 +179,8 @@ def _mass(measure: Mass, seen: AtPlaces, places: list[Place]) -> np.ndarray:
 
 _VALUES: dict[type, Callable[[Any, AtPlaces, list[Place]], np.ndarray]] = {
     ForceAt: _force, Stroke: _stroke, PressureFor: _pressure_for, Work: _work, ForceVariation: _variation,
-    CurveMiss: _miss, Diameter: _diameter, FibreTension: _tension, FibreSafety: _safety, JammingMargin: _room,
-    StabilityMargin: _left, AirVolume: _air, Mass: _mass,
+    CurveMiss: _miss, ProfileMiss: _off_profile, Diameter: _diameter, FibreTension: _tension, FibreSafety: _safety,
+    JammingMargin: _room, StabilityMargin: _left, AirVolume: _air, Mass: _mass,
 }  # fmt: skip
 
 

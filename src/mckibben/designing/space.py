@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
+from operator import attrgetter
 from typing import Any
 
 import attrs
@@ -154,7 +155,8 @@ def space_of(muscle: Muscle, free: Mapping[str, Any]) -> Space:
     if not isinstance(free, Mapping) or not free:
         advice = 'such as free={"braid.angle": "55 deg to 70 deg"}'
         raise SpecError("free", free, "must name at least one field and its range or list", advice)
-    axes = tuple(_axis(muscle, full_name(str(name)), given) for name, given in free.items())
+    every = [one for name, given in free.items() for one in _each(muscle, full_name(str(name)), given)]
+    axes = tuple(_axis(muscle, name, given) for name, given in every)
     names = [axis.name for axis in axes]
     for name in names:
         if names.count(name) > 1:
@@ -164,6 +166,14 @@ def space_of(muscle: Muscle, free: Mapping[str, Any]) -> Space:
                 raise SpecError(f"free.{name}", allowed=f"lies within {other}, which is chosen from a list",
                                 advice="free one of them")  # fmt: skip
     return Space(muscle, axes)
+
+
+def _each(muscle: Muscle, name: str, given: Any) -> list[tuple[str, Any]]:
+    """A name with its range or list; that of a list of numbers with a range stands for each of its numbers."""
+    if isinstance(given, (list, Mapping)) or "[" in name or name.startswith("test.") or ".constants." in name:
+        return [(name, given)]
+    count = len(attrgetter(name)(muscle) or ()) if _declared(muscle, name).kind == "quantities" else 0
+    return [(f"{name}[{k}]", given) for k in range(count)] or [(name, given)]
 
 
 def _axis(muscle: Muscle, name: str, given: Any) -> Axis:

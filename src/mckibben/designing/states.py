@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Iterable
+from collections.abc import Collection, Iterable
 from typing import Any
 
 import attrs
@@ -11,6 +11,8 @@ import jax
 import numpy as np
 
 from mckibben.designing.places import By, Place
+from mckibben.measure.meridian import LINE
+from mckibben.measure.read import NODES
 from mckibben.measure.survey import survey
 from mckibben.results.verdict import Verdict
 from mckibben.solver.problem import Problem
@@ -18,6 +20,7 @@ from mckibben.solver.threads import one_thread
 from mckibben.spec import Isobaric, Isometric, Isotonic, Muscle, Test
 from mckibben.sweeps.batches import Solved, solve_together
 from mckibben.sweeps.groups import grouped, with_arrays
+from mckibben.sweeps.lines import lines_of
 
 __all__ = ["KEPT", "AtPlaces", "states_at"]
 
@@ -35,7 +38,10 @@ Columns = dict[str, np.ndarray]
 
 @attrs.frozen
 class AtPlaces:
-    """Designs of one kind, and what their states are: every number an array (designs), NaN where there is no state."""
+    """Designs of one kind, and what their states are: every number an array (designs), NaN where there is no state.
+
+    A state whose meridian was asked for has its `LINE` too, arrays (designs, points).
+    """
 
     muscle: Muscle  #: what varies is an array
     count: int
@@ -56,8 +62,9 @@ class AtPlaces:
 
 @one_thread()
 def states_at(
-    muscle: Muscle, values: Columns, count: int, places: Iterable[Place], tolerance: float
-) -> AtPlaces | None:
+    muscle: Muscle, values: Columns, count: int, places: Iterable[Place], tolerance: float,
+    lined: Collection[Place] = (),
+) -> AtPlaces | None:  # fmt: skip
     """What `count` designs are at the places; None where the fields cannot vary in a batch.
 
     Args:
@@ -66,6 +73,7 @@ def states_at(
         count: number of designs.
         places: where they are looked at.
         tolerance: relative error aimed at.
+        lined: of which of the places the meridian is asked for.
     """
     several = with_arrays(muscle, values)
     if several is None:
@@ -78,12 +86,13 @@ def states_at(
         own = [place for place in wanted if place.by == By.FORCE and place.at == force]
         own.sort(key=lambda place: place.pressure)
         test = Isotonic(force=force, pressure=[place.pressure for place in own])
-        _keep(seen, own, _solved(muscle, test, values, np.arange(count), tolerance), None)
+        line = any(place in lined for place in own)
+        _keep(seen, own, _solved(muscle, test, values, np.arange(count), tolerance, line), None)
     lengths = {place: _length(seen, place) for place in wanted if place.by != By.FORCE}
     for place in [place for place in lengths if place.by == By.SHARE and place.at == 1.0]:
         seen.states[place] = seen.states[Place(place.pressure, By.FORCE, 0.0)]
         del lengths[place]
-    _over_length(seen, muscle, values, lengths, tolerance)
+    _over_length(seen, muscle, values, lengths, tolerance, lined)
     _pulling(seen, muscle, values, lengths, tolerance)
     return seen
 
@@ -100,8 +109,9 @@ def _length(seen: AtPlaces, place: Place) -> np.ndarray:
 
 
 def _over_length(
-    seen: AtPlaces, muscle: Muscle, values: Columns, lengths: dict[Place, np.ndarray], tolerance: float
-) -> None:
+    seen: AtPlaces, muscle: Muscle, values: Columns, lengths: dict[Place, np.ndarray], tolerance: float,
+    lined: Collection[Place],
+) -> None:  # fmt: skip
     """States of one pressure each, from the longest to the shortest of every design."""
     for pressure in dict.fromkeys(place.pressure for place in lengths if place.pull is None):
         own = [place for place in lengths if place.pressure == pressure and place.pull is None]
@@ -109,11 +119,12 @@ def _over_length(
         order = np.argsort(-columns, axis=1, kind="stable")
         some = np.flatnonzero(np.isfinite(columns).all(axis=1))
         held = np.take_along_axis(columns, order, axis=1)[some]
-        found: Columns = _nothing(seen.count, len(own))
+        line = any(place in lined for place in own)
+        found: Columns = _nothing(seen.count, len(own), line)
         if len(some):
             test = Isobaric(pressure=pressure, length=held[0].tolist())
             of_some = {name: numbers[some] for name, numbers in values.items()} | {"test.length": held}
-            found = _put(found, some, _solved(muscle, test, of_some, np.arange(len(some)), tolerance))
+            found = _put(found, some, _solved(muscle, test, of_some, np.arange(len(some)), tolerance, line))
         _keep(seen, own, found, np.argsort(order, axis=1))
 
 
@@ -152,13 +163,14 @@ def _pulling(
         seen.states[place] = {name: np.where(off, np.nan, state[name][:, 0]) for name in KEPT}
 
 
-def _nothing(count: int, states: int) -> Columns:
-    return {name: np.full((count, states), np.nan) for name in KEPT}
+def _nothing(count: int, states: int, line: bool = False) -> Columns:
+    lines = {name: np.full((count, states, NODES), np.nan) for name in LINE if line}
+    return {name: np.full((count, states), np.nan) for name in KEPT} | lines
 
 
 def _put(into: Columns, some: np.ndarray, found: Columns) -> Columns:
-    for name in KEPT:
-        into[name][some] = found[name]
+    for name, values in into.items():
+        values[some] = found[name]
     return into
 
 
@@ -166,12 +178,14 @@ def _keep(seen: AtPlaces, places: list[Place], found: Columns, order: np.ndarray
     """Put what was found (designs, states) at its places; `order` says which state of each design is at which."""
     for k, place in enumerate(places):
         column = np.full(seen.count, k) if order is None else order[:, k]
-        seen.states[place] = {name: found[name][np.arange(seen.count), column] for name in KEPT}
+        seen.states[place] = {name: values[np.arange(seen.count), column] for name, values in found.items()}
 
 
-def _solved(muscle: Muscle, test: Test, values: Columns, index: np.ndarray, tolerance: float) -> Columns:
+def _solved(
+    muscle: Muscle, test: Test, values: Columns, index: np.ndarray, tolerance: float, line: bool = False
+) -> Columns:
     """The states of a test on every design; NaN where a batch does not find them, or they are not stable."""
-    found = _nothing(len(index), sum(step.points for step in test.as_steps(muscle)))
+    found = _nothing(len(index), sum(step.points for step in test.as_steps(muscle)), line)
     group = grouped(muscle, test, values, index)
     if group is None:
         return found
@@ -182,6 +196,8 @@ def _solved(muscle: Muscle, test: Test, values: Columns, index: np.ndarray, tole
             good[d] = _stable(solved, d)
         for name in KEPT:
             found[name][solved.group.index] = np.where(good, solved.numbers[name], np.nan)
+        for name, rows in (lines_of(solved) if line else {}).items():
+            found[name][solved.group.index] = np.where(good[..., None], rows, np.nan)
     return found
 
 

@@ -8,7 +8,7 @@ import attrs
 import numpy as np
 
 from mckibben.designing.places import Place
-from mckibben.designing.reading import places_of, value_of
+from mckibben.designing.reading import lined_of, places_of, value_of
 from mckibben.designing.space import Space
 from mckibben.designing.states import states_at
 from mckibben.spec.wishes import Demand, Goal, Measure
@@ -94,9 +94,10 @@ class Worth:
 def worth_of(task: Task, x: np.ndarray, tolerance: float) -> Worth:
     """What designs at places (d, axes) are worth, through the batches."""
     count = len(x)
+    lined = lined_of(task.measures)
     values = {measure: np.full(count, np.nan) for measure in task.measures}
     for muscle, numbers, index in task.space.kinds(x):
-        seen = states_at(muscle, numbers, len(index), task.places, tolerance)
+        seen = states_at(muscle, numbers, len(index), task.places, tolerance, lined)
         if seen is not None:
             for measure in task.measures:
                 values[measure][index] = value_of(measure, seen)

@@ -39,7 +39,7 @@ from mckibben.spec.loading import (
     Test,
 )
 from mckibben.spec.loads import FixedEnd, Load, Pulley, Viscosity
-from mckibben.spec.measures import AirVolume, CurveMiss, ForceAt, Mass, PressureFor, Stroke
+from mckibben.spec.measures import AirVolume, ForceAt, Mass, PressureFor, Stroke
 from mckibben.spec.muscle import Braid, Joint, Muscle
 from mckibben.spec.path import Path, PathMode
 from mckibben.spec.ranged import (
@@ -57,6 +57,7 @@ from mckibben.spec.series import Series
 from mckibben.spec.signal import Constant
 from mckibben.spec.signals import PWM, Jump, Ramp, Sine
 from mckibben.spec.stiffening import Stiffening
+from mckibben.spec.targets import CurveMiss, ProfileMiss
 
 __all__ = [
     "LAWS",
@@ -107,6 +108,7 @@ __all__ = [
     "PathMode",
     "Polytropic",
     "PressureFor",
+    "ProfileMiss",
     "Protocol",
     "Pulley",
     "Ramp",

@@ -17,11 +17,11 @@ from mckibben.spec.asked import (
 )
 from mckibben.spec.declared import Reads
 from mckibben.spec.errors import SpecError
-from mckibben.spec.fields import quantities, spec
+from mckibben.spec.fields import spec
 from mckibben.spec.wishes import Measure
 from mckibben.units import show
 
-__all__ = ["AirVolume", "CurveMiss", "ForceAt", "Mass", "PressureFor", "Stroke"]
+__all__ = ["AirVolume", "ForceAt", "Mass", "PressureFor", "Stroke"]
 
 
 @measure
@@ -109,43 +109,6 @@ class PressureFor(Measure):
     @property
     def where(self) -> str:
         return f"for {show(self.force, 'N', 4)} at {place_said(self, 'the length as made')}"
-
-
-@measure
-@spec("curve-miss")
-class CurveMiss(Measure):
-    """Root mean square difference [N] of the force-contraction curve from a wanted one, at one pressure.
-
-    Args:
-        pressure: gauge pressure [Pa].
-        contractions: where the force is wanted, such as ["0 %", "10 %", "20 %"].
-        forces: what is wanted there [N], as many.
-
-    Raises:
-        SpecError: for a value out of range, or other numbers of contractions and forces.
-
-    >>> mk.CurveMiss(pressure="4 bar", contractions=["0 %", "10 %"], forces=["400 N", "200 N"]).said
-    'rms difference from the wanted curve at 4 bar'
-    """
-
-    kind: ClassVar[str] = "curve-miss"
-    meaning: ClassVar[str] = "rms difference"
-    unit: ClassVar[str] = "N"
-    low: ClassVar[float] = 0.0
-    contractions: Reads[tuple[float, ...]] = quantities("1", meaning="where the force is wanted", size=(0.0, 10.0))
-    forces: Reads[tuple[float, ...]] = quantities("N", meaning="force that is wanted there", size=(0.0, 1e9))
-    pressure: Reads[float] = pressure_field()
-
-    def __attrs_post_init__(self) -> None:
-        if len(self.contractions) != len(self.forces):
-            said = f"must be {len(self.contractions)}, as many as contractions"
-            raise SpecError("curve-miss.forces", f"{len(self.forces)} of them", said)
-        if not max(self.contractions) < 1.0:
-            raise SpecError("curve-miss.contractions", max(self.contractions), "must be below 1 (100 %)")
-
-    @property
-    def where(self) -> str:
-        return f"from the wanted curve at {show(self.pressure, 'Pa', 4)}"
 
 
 @measure

@@ -21,7 +21,7 @@ from mckibben.solver.newton import MOST, batch_size
 from mckibben.solver.system import Unknowns
 from mckibben.sweeps.groups import Group
 
-__all__ = ["Paths", "finer", "followed"]
+__all__ = ["Paths", "finer", "followed", "on_line"]
 
 BETWEEN = 16
 """Parts of a step where a path is followed once more."""
@@ -61,7 +61,7 @@ class Paths:
 
     def on(self, some: np.ndarray) -> Placed:
         """Some of the designs on the space, as many as a batch takes."""
-        return _on(self.group.take(some), self.b[some], self.line)
+        return on_line(self.group.take(some), self.b[some], self.line)
 
     def rows(self, values: np.ndarray, some: np.ndarray) -> np.ndarray:
         """Rows (d, N, ...) of some of the designs, as (N, batch, ...)."""
@@ -159,7 +159,8 @@ def _put(state: Unknowns, some: np.ndarray, rows: Unknowns) -> None:
     state.u[some], state.loads[some] = (np.asarray(part)[: len(some)] for part in rows[:2])
 
 
-def _on(group: Group, b: np.ndarray, line: Line) -> Placed:
+def on_line(group: Group, b: np.ndarray, line: Line) -> Placed:
+    """Designs on a space, as many as a batch takes; the last is repeated where there are fewer."""
     size = batch_size(line.unknowns)
     placed: Placed = _placed(line, _stacked(group, size), _filled(b, size))
     return placed
