@@ -20,6 +20,8 @@ AT = 1e-4
 """Distance from a bound, over the range, at which a number counts as being there."""
 SETTLED = 0.05
 """Part of the slope of the goal that may be left over where the design is the best one near."""
+FLAT = 0.02
+"""Slope of the goal over itself, by the whole range of a number, up to which it is level."""
 CHANGE = 0.01
 """By which part a limit is changed."""
 
@@ -51,6 +53,8 @@ def prices_of(tried: Tried, x: np.ndarray) -> Prices:
     if size < 1e-9 * max(abs(seen.cost), 1e-12):
         said = ("at its limit: " + task.limits[k].said for k in np.flatnonzero(active))
         return Prices(np.zeros(len(active)), active, tuple(said))
+    if not len(rows) and size < FLAT * abs(seen.cost):
+        return Prices(unknown, active, ("nothing holds the design: the goal is best within the ranges",))
     multipliers, left = nnls(rows.T, -seen.of_cost) if len(rows) else (np.zeros(0), size)
     notes: list[str] = []
     if left > SETTLED * size:
