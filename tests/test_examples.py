@@ -9,6 +9,7 @@ import warnings
 from pathlib import Path
 
 import numpy as np
+import pandas as pd
 import pytest
 from typer.testing import CliRunner
 
@@ -261,6 +262,35 @@ def test_examples_say_what_is_missing(
         printed(script, tmp_path, monkeypatch, capsys)
     assert not ended.value.code
     assert capsys.readouterr().out.startswith("skipped: ")
+
+
+MEASURED = Path(__file__).parents[2] / "shared" / "data" / "quadsegrity" / "big_isobaric.csv"
+
+
+@pytest.mark.skipif(not MEASURED.exists(), reason="the measured curves are not part of the repository")
+def test_a_measured_muscle(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]) -> None:
+    """The curves as their authors' files have them, but thinned; two of them are foretold."""
+    table = pd.read_csv(MEASURED)
+    for bar, rows in table.groupby("pressure_bar_gauge_nominal"):
+        lines = (f'"0.0","{x}","{F}"' for x, F in zip(rows["extension_mm"], rows["load_N"], strict=True))
+        text = "\n".join(["Time,Extension,Load", "(s),(mm),(N)", *lines, ""])
+        (tmp_path / f"{bar} bars.csv").write_text(text, encoding="utf-8")
+    monkeypatch.setattr(sys, "argv", ["fit_measured.py", str(tmp_path)])
+    rows = printed("fit_measured.py", tmp_path, monkeypatch, capsys)
+    assert rows[2][0] == pytest.approx(754.7, rel=0.01)
+    assert rows[4][0] == pytest.approx(51.7, rel=0.05)
+    foretold = [row[2] for row in rows[5:7]]  # in per cent of the range
+    assert foretold == pytest.approx([3.8, 1.3], abs=0.2)
+
+
+def test_a_measured_muscle_that_is_not_there(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    monkeypatch.setattr(sys, "argv", ["fit_measured.py", str(tmp_path)])
+    with pytest.raises(SystemExit) as ended:
+        printed("fit_measured.py", tmp_path, monkeypatch, capsys)
+    assert not ended.value.code
+    assert capsys.readouterr().out.startswith("skipped: sample_data = quadsegrity: its files")
 
 
 def made_up() -> mk.Muscle:
