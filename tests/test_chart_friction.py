@@ -18,7 +18,7 @@ from mckibben.motion.plant import Plant
 from mckibben.motion.regime import FIRST, PER
 from mckibben.motion.start import state_of
 from mckibben.potential.evaluate import Table, Values, evaluate
-from mckibben.potential.rubbing import Rubbing, Rubs, rubbing, rubbing_at
+from mckibben.potential.rubbing import FrictionAt, Rubs, rubbing, rubbing_at
 from mckibben.solver.bench import Bench
 from mckibben.solver.held import Held
 from mckibben.spec.declared import evolved
@@ -137,10 +137,10 @@ def test_too_much_friction_is_refused() -> None:
 def even(friction: float, sticking: float, by_length: float = 0.0, by_pressure: float = 0.0) -> Any:
     """Friction that changes evenly from (0, 0) on."""
 
-    def at(h: float, P: float) -> Rubbing:
+    def at(h: float, P: float) -> FrictionAt:
         root = math.sqrt(sticking)
         f = friction + by_length * h + by_pressure * P
-        return Rubbing(f, sticking, f / root, by_length / root, by_pressure / root)
+        return FrictionAt(f, sticking, f / root, by_length / root, by_pressure / root)
 
     return at
 

@@ -407,6 +407,7 @@ def test_many_are_as_each_by_itself() -> None:
     rigs = [attrs.evolve(HELD, valve=mk.Valve(C=C, b=0.3)) for C in (1e-10, 2e-10)]
     many = mk.simulate_many(rigs, until="0.1 s", chart=Vessel(), points=11, workers=1)
     assert many == [mk.simulate(rig, until="0.1 s", chart=Vessel(), points=11) for rig in rigs]
+    assert mk.simulate_many([], until="0.1 s", chart=Vessel(), workers=2) == []
     wrong = [*rigs, attrs.evolve(HELD, command=mk.Series([0, 0.05], [0, 1]))]
     with pytest.raises(mk.SpecError, match=r"rigs\[2\]: rig.command: ends at 0.05 s"):
         mk.simulate_many(wrong, until="0.1 s", chart=Vessel(), workers=1)

@@ -61,7 +61,7 @@ def check_picture(path: Path) -> None:
     if path.suffix.lower() == ".html":
         from mckibben.view import web
 
-        web.check(str(path))
+        web.check_plotly(str(path))
 
 
 def picture(found: Any, suffix: str, pixels: int = 0, kind: str = "auto", data: Any = None) -> bytes:

@@ -11,7 +11,7 @@ from typing import Any
 from mckibben import disk
 from mckibben.spec.errors import SpecError
 
-__all__ = ["check", "fetch", "place_of"]
+__all__ = ["check_unchanged", "fetch", "place_of"]
 
 CHECKSUMS = "checksums.txt"
 """What lies beside the files: the SHA-256 of each as first fetched, in the form that `sha256sum --check` reads.
@@ -51,7 +51,7 @@ def fetch(folder: Path, addresses: Mapping[str, str]) -> None:
         disk.write(folder / CHECKSUMS, "".join(lines).encode(), force=True)
 
 
-def check(folder: Path) -> None:
+def check_unchanged(folder: Path) -> None:
     """SpecError where a file of a folder is no longer what was fetched."""
     for name, known in _known(folder).items():
         if (folder / name).is_file() and _sha256(folder / name) != known:

@@ -11,7 +11,7 @@ from urllib.parse import quote
 
 import attrs
 
-from mckibben.data.fetch import check, fetch, place_of
+from mckibben.data.fetch import check_unchanged, fetch, place_of
 from mckibben.data.read import read
 from mckibben.data.values import Data
 from mckibben.spec.errors import SpecError, nearest
@@ -84,7 +84,7 @@ def sample_data(name: str, folder: str | PathLike[str] | None = None, *, downloa
     if download:
         files = {file: f"{sample.root}/{rest}/{quote(file)}" for file, (rest, *_) in sample.files.items()}
         fetch(place, files)
-    check(place)
+    check_unchanged(place)
     there = [file for file in sample.files if (place / file).is_file()]
     if not there:
         advice = f"fetch them with download=True, or get them from {sample.source} ({sample.licence})"

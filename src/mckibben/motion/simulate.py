@@ -128,7 +128,7 @@ def simulate_many(
     run = partial(_one, end=end, points=points, tolerance=tolerance, method=method, watch=None)
     count = min(workers or os.cpu_count() or 1, max(1, len(given) // 8)) if workers is None else workers
     tell = watch or (lambda done, total: None)
-    sent = None if count <= 1 else _packed(given, maps, 8 * count)
+    sent = None if min(count, len(given)) <= 1 else _packed(given, maps, 8 * count)
     if sent is not None:
         return _spread(run, sent, count, lambda done: tell(done, len(given)))
     found = []

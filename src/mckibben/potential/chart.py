@@ -12,7 +12,7 @@ import numpy as np
 from mckibben.potential import inverse
 from mckibben.potential.evaluate import Table, Values, across, edge, evaluate, in_blocks, largest_radius
 from mckibben.potential.rubbing import At as RubbingAt
-from mckibben.potential.rubbing import Rubbing, Rubs, rubbing, rubbing_at, rubs_of
+from mckibben.potential.rubbing import FrictionAt, Rubs, rubbing, rubbing_at, rubs_of
 from mckibben.potential.scalar import scalar
 from mckibben.potential.table import table_of
 from mckibben.shown import Shown
@@ -130,11 +130,11 @@ class Chart(Shown):
         force, friction = self.force(length, pressure), self.friction(length, pressure)
         return force - friction, force + friction
 
-    def _rubbing(self, length: Any, pressure: Any) -> Rubbing:
+    def _rubbing(self, length: Any, pressure: Any) -> FrictionAt:
         h, P = np.broadcast_arrays(_read("length", length, "m"), _read("pressure", pressure, "Pa"))
         if self.rubs is None:
-            return Rubbing(*np.zeros((5, *h.shape)))
-        return Rubbing(*(one.reshape(h.shape) for one in rubbing(self.rubs, self.table, h.ravel(), P.ravel())))
+            return FrictionAt(*np.zeros((5, *h.shape)))
+        return FrictionAt(*(one.reshape(h.shape) for one in rubbing(self.rubs, self.table, h.ravel(), P.ravel())))
 
     def inside(self, length: Any, pressure: Any) -> Any:
         """Whether points lie in the range, where the muscle is stable and the error holds."""

@@ -17,7 +17,7 @@ from mckibben.potential.evaluate import Table, across, chebyshev, edge
 if TYPE_CHECKING:
     import xarray as xr
 
-__all__ = ["Rubbing", "Rubs", "rubbing", "rubbing_at", "rubs_of", "variables_of"]
+__all__ = ["FrictionAt", "Rubs", "rubbing", "rubbing_at", "rubs_of", "variables_of"]
 
 LEAST = 1e-9
 """Least friction [N] and stiffness [N/m] of a map: a series may be below 0 where there is nearly none."""
@@ -30,7 +30,7 @@ class Rubs(NamedTuple):
     sticking: np.ndarray  #: what crossings that stick add to dF/dh [N/m]
 
 
-class Rubbing(NamedTuple):
+class FrictionAt(NamedTuple):
     """Friction at lengths and pressures, in SI units; arrays as the points are.
 
     Crossings that stick pull with sqrt(sticking) e, where e^2 / 2 is the energy stored in them; at |e| = room all slip.
@@ -43,8 +43,8 @@ class Rubbing(NamedTuple):
     room_by_pressure: Any  #: at constant length [sqrt(J)/Pa]
 
 
-At = Callable[[float, float], Rubbing]
-"""Length [m] and gauge pressure [Pa], both floats, to `Rubbing` of floats."""
+At = Callable[[float, float], FrictionAt]
+"""Length [m] and gauge pressure [Pa], both floats, to `FrictionAt` of floats."""
 
 
 def variables_of(rubs: Rubs) -> dict[str, tuple[tuple[str, ...], np.ndarray, dict[str, str]]]:
@@ -67,7 +67,7 @@ def rubs_of(data: xr.Dataset) -> Rubs | None:
     return Rubs(*(np.asarray(data[name].values, float) for name in Rubs._fields))
 
 
-def rubbing(rubs: Rubs, table: Table, length: np.ndarray, pressure: np.ndarray) -> Rubbing:
+def rubbing(rubs: Rubs, table: Table, length: np.ndarray, pressure: np.ndarray) -> FrictionAt:
     """Friction at points (N) each, without the slopes of the room: NaN for them."""
     y = across(table, pressure)
     h = np.clip(length, edge(table.low, y)[0], edge(table.high, y)[0])
@@ -75,7 +75,7 @@ def rubbing(rubs: Rubs, table: Table, length: np.ndarray, pressure: np.ndarray) 
     X, Y = chebyshev((h - table.length[0]) / table.length[1], n), chebyshev(y, m)
     friction, sticking = (np.maximum((X * (one @ Y)).sum(0), LEAST) for one in rubs)
     unknown = np.full_like(friction, np.nan)
-    return Rubbing(friction, sticking, friction / np.sqrt(sticking), unknown, unknown)
+    return FrictionAt(friction, sticking, friction / np.sqrt(sticking), unknown, unknown)
 
 
 def rubbing_at(rubs: Rubs, table: Table) -> At:
@@ -95,7 +95,7 @@ def rubbing_at(rubs: Rubs, table: Table) -> At:
             return length, 0.0
         return (low, low_y * y_P) if length < low else (high, high_y * y_P)
 
-    def at(length: float, pressure: float) -> Rubbing:
+    def at(length: float, pressure: float) -> FrictionAt:
         P = min(max(pressure, first), last)
         q = math.sqrt(P - first + soft)
         y = (q - q0) / q1
@@ -109,7 +109,7 @@ def rubbing_at(rubs: Rubs, table: Table) -> At:
         (friction, friction_h, friction_P), (sticking, sticking_h, sticking_P) = found
         root = math.sqrt(sticking)
         room, part = friction / root, 0.5 * friction / (root * sticking)
-        return Rubbing(friction, sticking, room, friction_h / root - part * sticking_h,
+        return FrictionAt(friction, sticking, room, friction_h / root - part * sticking_h,
                        friction_P / root - part * sticking_P)  # fmt: skip
 
     return at

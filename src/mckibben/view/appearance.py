@@ -19,6 +19,7 @@ from mckibben.view import style
 from mckibben.view.braid3d import SECTOR, Body
 from mckibben.view.projection import View
 from mckibben.view.tube import Floats
+from mckibben.view.words import title
 
 PLAIN = "none"
 """The colour that says nothing."""
@@ -144,7 +145,7 @@ def the_state(call: str, result: Result, state: Any) -> int:
 
 def head(result: Result, state: int) -> str:
     """What is shown, in a line."""
-    name = f'Muscle "{result.muscle.name}"' if result.muscle.name else "Muscle without a name"
+    name = title(result.muscle)
     numbers = ((result.length, "m"), (result.pressure, "Pa"), (result.force, "N"))
     said = ", ".join(show(float(values[state]), unit, 4) for values, unit in numbers)
     verdict = result.verdict[state]

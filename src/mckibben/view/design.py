@@ -38,7 +38,7 @@ def _single(design: Designed) -> Figure:
     _curves(figure.add_subplot(grid[0, 0]), design)
     if limits:
         _room(figure.add_subplot(grid[0, 1]), design)
-    _said(figure, design)
+    style.say(figure, *words(design), design.muscle)
     return figure
 
 
@@ -108,7 +108,7 @@ def _fronted(design: Designed) -> Figure:
     grid = figure.add_gridspec(1, 2, width_ratios=(1.15, 1.0))
     _goals(figure, figure.add_subplot(grid[0, 0]), design)
     _free(figure.add_subplot(grid[0, 1]), design)
-    _said(figure, design)
+    style.say(figure, *words(design), design.muscle)
     return figure
 
 
@@ -185,11 +185,3 @@ def words(design: Designed) -> tuple[str, list[str]]:
     if not design.feasible:
         notes.append("The demands cannot be met together: this design misses them least.")
     return f"{title(design.given)}, designed to {said}", notes
-
-
-def _said(figure: Figure, design: Designed) -> None:
-    heading, notes = words(design)
-    style.heading(figure, heading.replace(" %", "\u00a0%").replace(" N", "\u00a0N"))  # no line begins with a unit
-    for note in notes:
-        style.note(figure, note)
-    style.assumption_note(figure, design.muscle)

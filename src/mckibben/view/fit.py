@@ -52,7 +52,7 @@ def fitted(fit: Fitted) -> Figure:
     _legend(figure, fit, colours)
     for axes, letter in ((forces, "a"), (residuals, "b"), (strips, "c")):
         style.panel(axes, letter)
-    _said(figure, fit)
+    style.say(figure, *words(fit), fit.muscle)
     return figure
 
 
@@ -200,14 +200,6 @@ def words(fit: Fitted) -> tuple[str, list[str]]:
     if not fit.converged:
         notes.append("The search was ended before it had settled.")
     return f"{name}, {many}: {fit.goodness}, largest difference {worst}", notes
-
-
-def _said(figure: Figure, fit: Fitted) -> None:
-    heading, notes = words(fit)
-    style.heading(figure, heading.replace(" %", "\u00a0%").replace(" N", "\u00a0N"))  # no line begins with a unit
-    for note in notes:
-        style.note(figure, note)
-    style.assumption_note(figure, fit.muscle)
 
 
 def _with_error(value: str, error: str) -> str:

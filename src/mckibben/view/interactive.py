@@ -18,7 +18,7 @@ from mckibben.spec.errors import SpecError
 from mckibben.view import web, webcurves, webdesign, webfit, webmaps, webmotion
 from mckibben.view.plot import same_kind
 
-__all__ = ["ENDINGS", "check", "interactive"]
+__all__ = ["ENDINGS", "check_page", "interactive"]
 
 ENDINGS = {".html": "page for a browser"}
 _TAKES = "a result of run, several by their names, a design, a fit, a map or a motion"
@@ -57,18 +57,18 @@ def interactive(result: Any, path: str | PathLike[str], *, data: Any = None, for
     ...     print(error)
     curve.png: must end in .html (page for a browser); mk.plot(result).savefig("curve.png") writes a still picture
     """
-    check(path, force)
+    check_page(path, force)
     return disk.write(path, drawn(result, data).page(), force)
 
 
-def check(path: str | PathLike[str], force: bool = False) -> None:
+def check_page(path: str | PathLike[str], force: bool = False) -> None:
     """SpecError if `interactive` would fail for the file's name, its place, or plotly missing."""
     if Path(path).suffix.lower() not in ENDINGS:
         known = " or ".join(f"{name} ({meaning})" for name, meaning in ENDINGS.items())
         advice = f'mk.plot(result).savefig("{Path(path).name}") writes a still picture'
         raise SpecError(str(path), allowed=f"must end in {known}", advice=advice)
     disk.check_target(path, force)
-    web.check(str(path))
+    web.check_plotly(str(path))
 
 
 def drawn(result: Any, data: Any = None) -> web.Web:

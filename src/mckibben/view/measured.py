@@ -18,7 +18,7 @@ from mckibben.spec.errors import SpecError
 from mckibben.units import show
 from mckibben.view import style
 
-__all__ = ["Points", "draw", "overlay", "points", "said", "say"]
+__all__ = ["MeasuredPoints", "draw", "overlay", "points", "said", "say"]
 
 MARKERS = {LOADING: "o", UNLOADING: "v", UNKNOWN: "s"}
 MOST = 300
@@ -26,7 +26,7 @@ MOST = 300
 
 
 @attrs.frozen(eq=False)
-class Points:
+class MeasuredPoints:
     """Measured points that belong to a curve, in the units of its axes."""
 
     x: np.ndarray
@@ -51,12 +51,12 @@ class Points:
         return made
 
 
-def points(result: Result, data: Data) -> Points:
+def points(result: Result, data: Data) -> MeasuredPoints:
     """The points at which the bench held what the test held; SpecError where there are none."""
     picked = matching(result, data).decimated(MOST)
     across, what, _ = axes_of(result)
     x, y = (_shown(values_of(picked, result, of), of) for of in (across, what))
-    return Points(x, y, picked, values_of(picked, result, "length"))
+    return MeasuredPoints(x, y, picked, values_of(picked, result, "length"))
 
 
 def draw(

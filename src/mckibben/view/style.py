@@ -138,6 +138,14 @@ def heading(figure: Figure, text: str) -> None:
     figure.suptitle("\n".join(textwrap.wrap(text, width)), fontsize=TICK, color=BLACK)
 
 
+def say(figure: Figure, text: str, notes: Iterable[str], muscle: Muscle) -> None:
+    """A line above everything in which no line begins with a unit, and the notes and assumptions below."""
+    heading(figure, text.replace(" %", "\u00a0%").replace(" N", "\u00a0N"))
+    for line in notes:
+        note(figure, line)
+    assumption_note(figure, muscle)
+
+
 def assumption_note(figure: Figure, muscle: Muscle) -> None:
     """Add a note that names the values of the muscle that are assumed, if there are any."""
     said = assumption(muscle)

@@ -9,6 +9,7 @@ from matplotlib.figure import Figure
 from mckibben.results.tolerances import Tolerances
 from mckibben.units import show
 from mckibben.view import style
+from mckibben.view.words import title
 
 __all__ = ["scatter"]
 
@@ -43,7 +44,7 @@ def scatter(tolerances: Tolerances) -> Figure:
         _distribution(left, tolerances, k)
         _shares(right, tolerances, k)
     said = f"{tolerances.test.kind} test, state {data.attrs['state']}"
-    name = f'Muscle "{tolerances.muscle.name}"' if tolerances.muscle.name else "Muscle without a name"
+    name = title(tolerances.muscle)
     style.heading(figure, f"{name}: tolerances; {said}")
     style.note(figure, " ".join(f"{line[0].upper()}{line[1:]}." for line in tolerances.notes))
     return figure

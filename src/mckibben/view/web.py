@@ -16,7 +16,19 @@ from matplotlib.colors import to_hex
 from mckibben.spec.errors import SpecError
 from mckibben.view import style
 
-__all__ = ["GREY", "SYMBOLS", "Web", "check", "colours_of", "dots", "hover", "panels", "rows_of", "safe", "wrapped"]
+__all__ = [
+    "GREY",
+    "SYMBOLS",
+    "Web",
+    "check_plotly",
+    "colour_scale",
+    "dots",
+    "hover",
+    "panels",
+    "rows_of",
+    "safe",
+    "wrapped",
+]
 
 GREY = to_hex(style.GREY)
 FAINT = to_hex("0.9")
@@ -82,7 +94,7 @@ class Web:
         return made.encode("utf-8")
 
 
-def check(name: str) -> None:
+def check_plotly(name: str) -> None:
     """SpecError in one sentence where plotly is missing."""
     if find_spec("plotly") is None:
         said = "is an interactive picture, which takes plotly to draw"
@@ -135,7 +147,7 @@ def wrapped(text: str, width: int) -> str:
     return "<br>".join(map(safe, textwrap.wrap(text, width)))
 
 
-def colours_of(name: str) -> list[tuple[float, str]]:
+def colour_scale(name: str) -> list[tuple[float, str]]:
     """A colour map of matplotlib as plotly takes it."""
     return [(float(x), to_hex(colormaps[name](float(x)))) for x in np.linspace(0.0, 1.0, 33)]
 

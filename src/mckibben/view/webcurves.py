@@ -15,7 +15,7 @@ from mckibben.results.result import Result
 from mckibben.results.rows import rows
 from mckibben.spec.errors import SpecError
 from mckibben.view import curves, style, web
-from mckibben.view.measured import Points, points, said
+from mckibben.view.measured import MeasuredPoints, points, said
 from mckibben.view.words import headline, lost
 
 __all__ = ["family", "measured", "states"]
@@ -67,7 +67,7 @@ def measured(results: Mapping[str, Result], data: Data) -> web.Web:
     return web.Web(made.figure, made.heading, (*notes, *made.notes))
 
 
-def _points(figure: Any, found: Points, name: str, colour: str) -> None:
+def _points(figure: Any, found: MeasuredPoints, name: str, colour: str) -> None:
     """Measured points, a marker for each branch; they lie below the curve."""
     told_of = found.told()
     for branch, marker, of in found.branches():

@@ -33,7 +33,7 @@ def front(design: Designed) -> web.Web:
     place, star = {"row": 1, "col": 1}, {"size": 13, "color": style.VERMILLION, "symbol": "star"}
     labels = [web.wrapped(label, 46) + f"<br>{better}" for _, label, better in columns]
     if space:
-        colours = {"color": columns[2][0], "colorscale": web.colours_of(style.SEQUENCE), "size": 4}
+        colours = {"color": columns[2][0], "colorscale": web.colour_scale(style.SEQUENCE), "size": 4}
         points = web.dots(columns[0][0], columns[1][0], texts, mode="markers", name="front", marker=colours)
         figure.add_scatter3d(**points, z=np.asarray(columns[2][0], float), showlegend=False, **place)
         one = web.dots(

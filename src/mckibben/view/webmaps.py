@@ -118,7 +118,7 @@ def _contours(
     size = float(np.nanmax(np.abs(force))) if np.isfinite(force).any() else 1.0
     figure.add_contour(
         x=style.shown(lengths, "m"), y=style.shown(pressures, "Pa"), z=force, customdata=np.stack(shown, axis=-1),
-        zmin=-size, zmax=size, colorscale=web.colours_of("RdBu_r"), ncontours=24, line={"width": 0.3},
+        zmin=-size, zmax=size, colorscale=web.colour_scale("RdBu_r"), ncontours=24, line={"width": 0.3},
         hovertemplate="<br>".join([*PLACE, *lines]) + "<extra></extra>", hoverongaps=False, showlegend=False,
         colorbar={"title": {"text": style.axis_label("force", "N"), "side": "top"}, "thickness": 14},
         row=1, col=column,
