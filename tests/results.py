@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from mckibben.results.result import Result, about, dataset
+from mckibben.results.result import Result, about, dataset, tested
 from mckibben.results.variables import FIELDS, STEP, has
 from mckibben.spec import Muscle, Test
 
@@ -24,5 +24,5 @@ def made(muscle: Muscle, test: Test, reached: int) -> Result:
         steps[name] = rng.integers(-1, 5, count)
     versions = {"mckibben": "0.1.0", "jax": "0.10"}
     warnings = ["neighbouring fibres touch", "and more"]
-    said = about(muscle, test, versions, "2026-01-01T00:00:00", warnings, "incomplete")
+    said = tested(muscle, test) | about(versions, "2026-01-01T00:00:00", warnings, "incomplete")
     return Result(muscle, test, dataset(steps, fields, v, said))

@@ -72,7 +72,7 @@ def report(muscle: Muscle, test: Test, parts: list[Part], H0: float, cautions: l
         one.v for part in parts for one in (part.survey, *(s.survey for s in part.sought.values())) if one is not None
     ]
     v = known[0] if known else np.linspace(0.0, H0, NODES)
-    return Result(muscle, test, Table(steps, fields, v, about(muscle, test, versions(), date, notes, status))), notes
+    return Result(muscle, test, Table(steps, fields, v, about(versions(), date, notes, status))), notes
 
 
 @cache
@@ -128,9 +128,8 @@ def _fields(parts: list[Part], names: list[str]) -> dict[str, np.ndarray]:
     rooms = []
     for part in parts:
         seen = {} if part.survey is None else part.survey.fields
-        room = {name: np.full((part.asked, NODES), np.nan) for name in names}
-        for name, values in seen.items():
-            room[name][: part.reached] = values
+        absent, beyond = (np.full((n, NODES), np.nan) for n in (part.reached, part.asked - part.reached))
+        room = {name: np.concatenate([seen.get(name, absent), beyond]) for name in names}
         for i, one in part.sought.items():
             for name, values in _at(part, one).items():
                 room[name][i] = values

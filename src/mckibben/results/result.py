@@ -30,14 +30,14 @@ class Table:
     steps: dict[str, np.ndarray]  #: per state (n)
     fields: dict[str, np.ndarray]  #: per state and point (n, q)
     v: np.ndarray  #: axial material coordinate (q) [m]
-    attrs: dict[str, Any]
+    attrs: dict[str, Any]  #: but what follows from the muscle and the test
 
     def __getitem__(self, name: str) -> np.ndarray:
         return self.v if name == "v" else np.asarray((self.steps if name in STEP else self.fields)[name])
 
-    def dataset(self) -> xr.Dataset:
-        """The Dataset; its arrays are read-only."""
-        return dataset(self.steps, self.fields, self.v, self.attrs)
+    def dataset(self, about: dict[str, Any]) -> xr.Dataset:
+        """The Dataset with all its attributes; its arrays are read-only."""
+        return dataset(self.steps, self.fields, self.v, about)
 
 
 def dataset(steps: dict[str, Any], fields: dict[str, np.ndarray], v: np.ndarray, about: dict[str, Any]) -> xr.Dataset:
@@ -85,11 +85,13 @@ class Result(Shown):
     @cached_property
     def data(self) -> xr.Dataset:
         """Dataset of everything known of the states."""
-        return self._given.dataset() if isinstance(self._given, Table) else self._given
+        return self._given.dataset(self.attributes) if isinstance(self._given, Table) else self._given
 
     @property
     def attributes(self) -> dict[str, Any]:
         """Attributes of the Dataset: title, muscle and test as TOML, versions, date, warnings and so on."""
+        if isinstance(self._given, Table):  # written only where it is asked for
+            return tested(self.muscle, self.test) | self._given.attrs
         return self._given.attrs
 
     def __eq__(self, other: object) -> bool:
@@ -142,7 +144,7 @@ class Result(Shown):
     @property
     def cautions(self) -> tuple[str, ...]:
         """What a real muscle may do that the model does not know; each names the state from which it may."""
-        return tuple(filter(None, self.attributes["warnings"].split("\n")))
+        return tuple(filter(None, self._given.attrs["warnings"].split("\n")))
 
     @property
     def reached(self) -> int:
@@ -152,7 +154,7 @@ class Result(Shown):
     @property
     def status(self) -> str:
         """complete, incomplete (some states have no admissible equilibrium or were not reached) or interrupted."""
-        return str(self.attributes["status"])
+        return str(self._given.attrs["status"])
 
     def to_pandas(self) -> Any:
         """DataFrame in SI units with a row per state; each head is a variable of `data` and its unit: "force [N]".
@@ -246,7 +248,7 @@ class State(Shown):
     @property
     def cautions(self) -> tuple[str, ...]:
         """What a real muscle may do there that the model does not know."""
-        return tuple(filter(None, self.result.attributes["warnings"].split("\n")))
+        return self.result.cautions
 
     @property
     def error_estimate(self) -> float:
@@ -276,15 +278,19 @@ class State(Shown):
         return f"<State: {self.verdict}, {numbers}>"
 
 
-def about(
-    muscle: Muscle, test: Test, versions: dict[str, str], date: str, warnings: list[str], status: str
-) -> dict[str, Any]:
-    """Attributes that a Dataset carries."""
+def tested(muscle: Muscle, test: Test) -> dict[str, Any]:
+    """Attributes that a Dataset carries: what was tested."""
     return {
         "title": f"McKibben muscle, {test.kind} test",
         "muscle": to_toml(muscle, allow_custom=True),
         "test": to_toml(test, allow_custom=True),
         "assumed": ", ".join(muscle.assumed),
+    }
+
+
+def about(versions: dict[str, str], date: str, warnings: list[str], status: str) -> dict[str, Any]:
+    """Attributes that a Dataset carries: by what it was made, when, and what became of it."""
+    return {
         "mckibben_version": versions["mckibben"],
         "versions": ", ".join(f"{name} {version}" for name, version in versions.items()),
         "date": date,
