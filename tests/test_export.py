@@ -1,5 +1,6 @@
 """Maps in other programs, each run there: FMUs by fmpy, models by MuJoCo."""
 
+import ctypes
 import math
 import re
 import shutil
@@ -16,6 +17,7 @@ import numpy as np
 import pytest
 import xarray as xr
 from fmpy.fmi2 import FMU2Slave
+from fmpy.fmi3 import FMU3Slave
 from fmpy.validation import validate_fmu
 from typer.testing import CliRunner
 
@@ -78,29 +80,32 @@ def chart() -> mk.Chart:
 
 
 class Running:
-    """An FMU under way."""
+    """An FMU under way, of either version of FMI."""
 
     def __init__(self, path: Path, **parameters: float) -> None:
         about = fmpy.read_model_description(str(path))
+        self.third = about.fmiVersion == "3.0"
         self.folder = fmpy.extract(str(path))
         self.numbers = {variable.name: variable.valueReference for variable in about.modelVariables}
         self.flags = {variable.name for variable in about.modelVariables if variable.type == "Boolean"}
         self.said: list[str] = []
-        self.slave: FMU2Slave = fmpy.instantiate_fmu(
+        self.slave: FMU2Slave | FMU3Slave = fmpy.instantiate_fmu(
             self.folder, about, "CoSimulation", logger=lambda *words: self.said.append(words[-1].decode())
         )
         self.time = 0.0
         self.start(**parameters)
 
     def start(self, **parameters: float) -> None:
-        self.slave.setupExperiment()
+        if not self.third:
+            self.slave.setupExperiment()
         self.set(**parameters)
         self.slave.enterInitializationMode()
         self.slave.exitInitializationMode()
 
     def set(self, **values: float) -> None:
         for name, value in values.items():
-            tell = self.slave.setBoolean if name in self.flags else self.slave.setReal
+            real = self.slave.setFloat64 if self.third else self.slave.setReal
+            tell = self.slave.setBoolean if name in self.flags else real
             tell([self.numbers[name]], [value])
 
     def step(self, span: float) -> None:
@@ -108,7 +113,8 @@ class Running:
         self.time += span
 
     def get(self, name: str) -> float:
-        ask = self.slave.getBoolean if name in self.flags else self.slave.getReal
+        real = self.slave.getFloat64 if self.third else self.slave.getReal
+        ask = self.slave.getBoolean if name in self.flags else real
         return float(ask([self.numbers[name]])[0])
 
     def stop(self) -> None:
@@ -122,6 +128,8 @@ def fmus(chart: mk.Chart, tmp_path_factory: pytest.TempPathFactory) -> dict[str,
     return {
         "muscle": mk.export(chart, folder / "muscle.fmu"),
         "lift": mk.export(chart, folder / "lift.fmu", name="lift", mass="2 kg"),
+        "muscle 3": mk.export(chart, folder / "muscle3.fmu", fmi=3),
+        "lift 3": mk.export(chart, folder / "lift3.fmu", name="lift", mass="2 kg", fmi=3),
     }
 
 
@@ -139,7 +147,7 @@ def running(fmus: dict[str, Path]) -> Iterator[Callable[..., Running]]:
 
 
 @needs_compiler
-@pytest.mark.parametrize("name", ["muscle", "lift"])
+@pytest.mark.parametrize("name", ["muscle", "lift", "muscle 3", "lift 3"])
 def test_fmus_are_valid_and_hold_their_source(fmus: dict[str, Path], name: str) -> None:
     assert validate_fmu(str(fmus[name])) == []
     assert set(fmpy.supported_platforms(str(fmus[name]))) == {"c-code", fmpy.platform}
@@ -172,8 +180,36 @@ def test_an_fmu_tells_what_the_map_does_inside_and_outside(chart: mk.Chart, runn
 
 
 @needs_compiler
-def test_a_slack_muscle_does_not_push_and_inputs_count_at_once(chart: mk.Chart, running: Any) -> None:
-    one = running("muscle", slack=True)
+@pytest.mark.parametrize("name", ["muscle", "lift"])
+def test_fmi_3_gives_the_same_numbers_as_fmi_2(running: Any, name: str) -> None:
+    both = [running(name + version) for version in ("", " 3")]
+    outputs = sorted(both[0].numbers)
+    assert {*both[1].numbers} == {*outputs, "time"}
+    seen: list[list[list[float]]] = [[], []]
+    for one, rows in zip(both, seen, strict=True):
+        for k in range(20):
+            one.set(**({"pressure": 1e4 * k, "length": 0.11 - 1e-3 * k} if name == "muscle" else {"command": 1.0}))
+            one.step(5e-3)
+            rows.append([one.get(output) for output in outputs])
+    assert seen[0] == seen[1]
+    assert both[1].get("time") == pytest.approx(0.1)
+
+
+@needs_compiler
+def test_every_function_of_fmi_3_is_there(fmus: dict[str, Path], tmp_path: Path) -> None:
+    header = (Path(fmpy.__file__).parent / "c-code" / "fmi3Functions.h").read_text()
+    names = set(re.findall(r"^FMI3_Export fmi3\w+TYPE +(fmi3\w+);", header, re.MULTILINE))
+    assert len(names) == 75
+    folder = fmpy.extract(str(fmus["muscle 3"]), str(tmp_path))
+    (path,) = Path(folder, "binaries").glob("*/muscle.*")
+    library = ctypes.CDLL(str(path))
+    assert [name for name in sorted(names) if not hasattr(library, name)] == []
+
+
+@needs_compiler
+@pytest.mark.parametrize("name", ["muscle", "muscle 3"])
+def test_a_slack_muscle_does_not_push_and_inputs_count_at_once(chart: mk.Chart, running: Any, name: str) -> None:
+    one = running(name, slack=True)
     one.set(length=0.07, pressure=1e5)
     assert chart.force(0.07, 1e5) < 0.0 == one.get("force") == one.get("stiffness")
     one.set(length=0.1)
@@ -282,28 +318,36 @@ def test_a_lift_is_that_of_simulate(chart: mk.Chart, running: Any) -> None:
 
 
 @needs_compiler
-def test_an_fmu_goes_back_to_a_kept_state(running: Any) -> None:
-    one = running("lift", pressure_start=0.2e5)
+@pytest.mark.parametrize("name", ["lift", "lift 3"])
+def test_an_fmu_goes_back_to_a_kept_state(running: Any, name: str) -> None:
+    one = running(name, pressure_start=0.2e5)
     one.set(command=1.0)
     one.step(0.05)
-    kept = one.slave.getFMUstate()
+    slave = one.slave
+    keep, back, forget = (
+        (slave.getFMUState, slave.setFMUState, slave.freeFMUState)
+        if one.third
+        else (slave.getFMUstate, slave.setFMUstate, slave.freeFMUstate)
+    )
+    kept = keep()
     one.step(0.05)
     first = one.get("length")
-    one.slave.setFMUstate(kept)
-    one.slave.freeFMUstate(kept)
+    back(kept)
+    forget(kept)
     one.step(0.05)
     assert one.get("length") == first
 
 
 @needs_compiler
-def test_an_fmu_says_what_is_wrong(running: Any) -> None:
-    one = running("muscle")
+@pytest.mark.parametrize("version", ["", " 3"])
+def test_an_fmu_says_what_is_wrong(running: Any, version: str) -> None:
+    one = running("muscle" + version)
     for wrong, said in (({"force": 1.0}, "output"), ({"slack": True}, "parameter"), ({"length": math.nan}, "finite")):
         with pytest.raises(fmpy.fmi1.FMICallException):
             one.set(**wrong)
         assert said in one.said[-1]
     assert one.get("length") > 0.0
-    rig = running("lift")
+    rig = running("lift" + version)
     rig.slave.reset()
     with pytest.raises(fmpy.fmi1.FMICallException):
         rig.start(critical_ratio=1.0)
@@ -338,6 +382,8 @@ def test_a_compiler_that_fails_is_quoted(chart: mk.Chart, tmp_path: Path, monkey
         ("muscle.xml", {"mass": 0.0}, r"export.mass.*must be above 0"),
         ("muscle.xml", {"name": "my muscle"}, r"export.name.*letters, digits"),
         ("muscle.xml", {"points": (1, 2)}, r"export.points"),
+        ("muscle.xml", {"fmi": 3}, r"export.fmi.*is for .fmu"),
+        ("muscle.fmu", {"fmi": 1}, r"export.fmi.*must be 2 or 3"),
     ],
 )
 def test_what_makes_no_sense_is_refused(
@@ -455,3 +501,15 @@ def test_commands_write_them_and_say_the_error(chart: mk.Chart, tmp_path: Path) 
     done = invoke("-o", tmp_path / "arm.h", "--mass", "3 kg")
     assert done.exit_code == 2
     assert "export.mass" in done.output
+    done = invoke("-o", tmp_path / "arm.h", "--fmi", "3")
+    assert done.exit_code == 2
+    assert "export.fmi" in done.output
+
+
+@needs_compiler
+def test_the_command_writes_fmi_3(chart: mk.Chart, tmp_path: Path) -> None:
+    saved, written = tmp_path / "chart.nc", tmp_path / "muscle.fmu"
+    mk.save(chart, saved)
+    done = CliRunner().invoke(app, ["export", str(saved), "-o", str(written), "--fmi", "3"])
+    assert done.exit_code == 0, done.output
+    assert fmpy.read_model_description(str(written)).fmiVersion == "3.0"

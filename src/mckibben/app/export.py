@@ -45,6 +45,7 @@ def export(
         str | None,
         typer.Option(metavar="MASS", help='.fmu, .xml: hangs on the muscle, such as "2 kg"; an FMU has a valve then'),
     ] = None,
+    fmi: Annotated[int | None, typer.Option(help=".fmu: the version of FMI, 2 (by default) or 3")] = None,
     force: Force = False,
     quiet: Quiet = False,
 ) -> int:
@@ -70,7 +71,7 @@ def export(
     from mckibben.exports.export import export as exporting
     from mckibben.exports.export import how
 
-    how(output, size, name, mass, force)
+    how(output, size, name, mass, force, fmi)
     from mckibben.app import charted
 
     if made_here:
@@ -82,7 +83,7 @@ def export(
         if not isinstance(loaded, Chart):
             raise SpecError(str(file), allowed="holds no map", advice="give what mckibben chart saved")
         found = loaded
-    exporting(found, output, points=size, name=name, mass=mass, force=force)
+    exporting(found, output, points=size, name=name, mass=mass, fmi=fmi, force=force)
     if not quiet:
         charted.show(found)
         if output.suffix.lower() == ".xml":

@@ -23,6 +23,8 @@ INSTALL = {
     "darwin": "xcode-select --install",
     "win32": "MinGW-w64 (winget install BrechtSanders.WinLibs.POSIX.UCRT)",
 }
+ARM = ("arm64", "aarch64", "armv7l", "armv8l")
+"""What machines of that kind call themselves."""
 SHOWN = 400
 """Characters of what a compiler says that are shown."""
 
@@ -39,10 +41,14 @@ def compiler() -> list[str]:
     raise SpecError("compiler", allowed=f"an FMU takes a C compiler, and {missing}", advice=advice)
 
 
-def library_place() -> tuple[str, str]:
-    """The folder of an FMU (2.0) for a library of this machine, and the library's ending."""
+def library_place(fmi: int = 2) -> tuple[str, str]:
+    """The folder of an FMU (FMI 2.0 or 3.0) for a library of this machine, and the library's ending."""
     system, ending = {"win32": ("win", ".dll"), "darwin": ("darwin", ".dylib")}.get(sys.platform, ("linux", ".so"))
-    return f"{system}{'64' if sys.maxsize > 2**32 else '32'}", ending
+    wide = sys.maxsize > 2**32
+    if fmi == 2:
+        return f"{system}{'64' if wide else '32'}", ending
+    machine = ("aarch64" if wide else "aarch32") if platform.machine().lower() in ARM else "x86_64" if wide else "x86"
+    return f"{machine}-{'windows' if system == 'win' else system}", ending
 
 
 def compiled(sources: Mapping[str, str], main: str) -> bytes:

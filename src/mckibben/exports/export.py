@@ -11,6 +11,7 @@ from mckibben import disk
 from mckibben.charts.chart import chart
 from mckibben.exports.compiler import compiler
 from mckibben.exports.fmu import as_fmu
+from mckibben.exports.fmudescription import MAIN
 from mckibben.exports.lookup import as_json, as_mat
 from mckibben.exports.mjcf import as_mjcf
 from mckibben.exports.mjplugin import as_plugin
@@ -26,7 +27,8 @@ __all__ = ["FORMATS", "How", "export", "how"]
 
 FORMATS = {
     ".h": "C99: the map itself", ".py": "Python with NumPy alone: the map itself", ".csv": "a table",
-    ".mat": "tables for MATLAB and Simulink", ".json": "tables", ".fmu": "FMI 2.0, for co-simulation: the map itself",
+    ".mat": "tables for MATLAB and Simulink", ".json": "tables",
+    ".fmu": "FMI 2.0 or 3.0, for co-simulation: the map itself",
     ".xml": "MuJoCo: an affine actuator", ".c": "MuJoCo: a plugin with the map itself",
 }  # fmt: skip
 """Endings and what they stand for."""
@@ -42,6 +44,7 @@ class How(NamedTuple):
     points: tuple[int, int]  #: lengths and pressures of a table
     name: str
     mass: float | None  #: kg
+    fmi: int  #: version of FMI
 
 
 _WRITERS: dict[str, Callable[[Chart, How], bytes | str]] = {
@@ -50,13 +53,15 @@ _WRITERS: dict[str, Callable[[Chart, How], bytes | str]] = {
     ".csv": lambda made, how: table(made, *how.points),
     ".mat": lambda made, how: as_mat(made, *how.points),
     ".json": lambda made, how: as_json(made, *how.points),
-    ".fmu": lambda made, how: as_fmu(made, how.name, how.mass),
+    ".fmu": lambda made, how: as_fmu(made, how.name, how.mass, how.fmi),
     ".xml": lambda made, how: as_mjcf(made, how.name, how.mass),
     ".c": lambda made, how: as_plugin(made, how.name),
 }
 
 
-def how(path: str | PathLike[str], points: tuple[int, int], name: str, mass: Any, force: bool) -> How:
+def how(
+    path: str | PathLike[str], points: tuple[int, int], name: str, mass: Any, force: bool, fmi: int | None = None
+) -> How:
     """What is asked for, checked before long work. SpecError for what `export` refuses whatever the map."""
     suffix = suffix_of(path, FORMATS)
     disk.check_target(path, force)
@@ -65,11 +70,17 @@ def how(path: str | PathLike[str], points: tuple[int, int], name: str, mass: Any
     check_name(name, "export.name")
     if mass is not None and suffix not in MOVING:
         raise SpecError("export.mass", mass, f"is for {' and '.join(MOVING)}", f"leave it out for {suffix}")
+    if fmi is not None and suffix != ".fmu":
+        raise SpecError("export.fmi", fmi, "is for .fmu", f"leave it out for {suffix}")
+    if fmi not in (None, *MAIN):
+        raise SpecError("export.fmi", fmi, "must be 2 or 3", "the version of FMI that the simulator reads; most read 2")
     if suffix == ".fmu":
         compiler()
     declared = Declared(kind="quantity", meaning="mass on the muscle", read=read_quantity, unit="kg", low=0.0,
                         low_open=True, high=1e6)  # fmt: skip
-    return How(points, name, None if mass is None else float(read_quantity(mass, "export.mass", declared)))
+    return How(
+        points, name, None if mass is None else float(read_quantity(mass, "export.mass", declared)), int(fmi or 2)
+    )
 
 
 def export(
@@ -82,6 +93,7 @@ def export(
     points: tuple[int, int] = (LENGTHS, PRESSURES),
     name: str = "muscle",
     mass: Any = None,
+    fmi: int | None = None,
     force: bool = False,
     watch: Callable[[int, int], None] | None = None,
 ) -> Path:
@@ -91,9 +103,9 @@ def export(
     `.mat` (MATLAB, with breakpoints as Simulink's look-up tables take them), `.json` and `.csv` are tables over even
     lengths and pressures in SI units, with what must be known of them.
 
-    `.fmu` is for co-simulation by FMI 2.0, in C, compiled here, its source inside: pressure and length in; force,
-    volume, their slopes and the largest radius out. With a mass it moves: the command of a valve (ISO 6358) and a push
-    in; length, speed, pressure and the state of the air out; conductances, supply and so on are its parameters.
+    `.fmu` is for co-simulation by FMI 2.0 or 3.0, in C, compiled here, its source inside: pressure and length in;
+    force, volume, their slopes and the largest radius out. With a mass it moves: the command of a valve (ISO 6358) and
+    a push in; length, speed, pressure and the state of the air out; conductances, supply and so on are its parameters.
     `.xml` is a model for MuJoCo: a mass that hangs on the muscle, a tendon with an affine actuator whose activation is
     the pressure. How far its force is off the map stands in the file. The map itself is what `in_mujoco` gives it, in
     Python, or `.c`, an engine plugin whose head says how it is compiled and put into a model.
@@ -108,6 +120,7 @@ def export(
         name: what the functions in C begin with; the name of an FMU and of MuJoCo's tendon and actuator.
         mass: mass [kg] on the muscle, for `.fmu` (with a valve then) and `.xml` (a fifth of the largest force by
             default).
+        fmi: for `.fmu`: the version of FMI, 2 (by default) or 3.
         force: replace a file that is there already.
         watch: called with (pressures done, pressures in all) as a map is made.
 
@@ -122,7 +135,7 @@ def export(
     >>> mk.export(chart, "muscle.h").name
     'muscle.h'
     """
-    asked = how(path, points, name, mass, force)
+    asked = how(path, points, name, mass, force, fmi)
     if isinstance(muscle, Chart):
         if length is not None or pressure is not None:
             raise SpecError("export", allowed="a map has its range", advice="leave out length and pressure")

@@ -1,4 +1,4 @@
-"""A map as an FMU for co-simulation (FMI 2.0): its source in C, compiled here, with what describes it."""
+"""A map as an FMU for co-simulation (FMI 2.0 or 3.0): its source in C, compiled here, with what describes it."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ import zipfile
 from importlib.resources import files
 
 from mckibben.exports.compiler import compiled, library_place
-from mckibben.exports.fmudescription import description, in_c
+from mckibben.exports.fmudescription import MAIN, build_description, description, in_c
 from mckibben.exports.fmuvariables import muscle_variables, rig_variables
 from mckibben.potential.c_source import check_name
 from mckibben.potential.chart import Chart
@@ -20,14 +20,14 @@ DATE = (1980, 1, 1, 0, 0, 0)
 """Of every file inside, so that equal maps are equal files; ZIP knows none before."""
 
 
-def as_fmu(chart: Chart, name: str, mass: float | None = None) -> bytes:
-    """The FMU of a muscle alone; with `mass` [kg] that of a muscle with a mass and a valve.
+def as_fmu(chart: Chart, name: str, mass: float | None = None, fmi: int = 2) -> bytes:
+    """The FMU (FMI 2.0, or 3.0 for `fmi` 3) of a muscle alone; with `mass` [kg] of one with a mass and a valve.
 
     SpecError without a C compiler.
     """
-    described, written = sources(chart, name, mass)
-    folder, ending = library_place()
-    library = compiled(written, "fmu.c")
+    described, written = sources(chart, name, mass, fmi)
+    folder, ending = library_place(fmi)
+    library = compiled(written, MAIN[fmi])
     notes = "\n".join(html.escape(line) for line in chart.told)
     page = f"<!DOCTYPE html>\n<html><head><meta charset='utf-8'><title>{name}</title></head>\n<body><pre>{notes}</pre>"
     held: dict[str, str | bytes] = {
@@ -45,7 +45,7 @@ def as_fmu(chart: Chart, name: str, mass: float | None = None) -> bytes:
     return content.getvalue()
 
 
-def sources(chart: Chart, name: str, mass: float | None = None) -> tuple[str, dict[str, str]]:
+def sources(chart: Chart, name: str, mass: float | None = None, fmi: int = 2) -> tuple[str, dict[str, str]]:
     """The description, and the files of the source in C."""
     check_name(name, "export.name")
     first, last = (float(end) for end in chart.pressures)
@@ -55,7 +55,7 @@ def sources(chart: Chart, name: str, mass: float | None = None) -> tuple[str, di
     body = "fmu_muscle.c" if mass is None else "fmu_rig.c"
     inside = files("mckibben.exports")
     written = {
-        "fmu.c": (inside / "fmu.c").read_text(encoding="utf-8"),
+        **{file: (inside / file).read_text(encoding="utf-8") for file in (MAIN[fmi], "fmu.h")},
         "muscle.h": chart.to_c(),
         "model.h": f'#include "muscle.h"\n\n#define RUBBER {chart.rubber_inside!r}\n{in_c(variables)}\n'
         + (inside / body).read_text(encoding="utf-8"),
@@ -63,4 +63,6 @@ def sources(chart: Chart, name: str, mass: float | None = None) -> tuple[str, di
     version = str(chart.data.attrs["mckibben_version"])
     guid = hashlib.sha256("".join((name, version, meaning, *written.values())).encode()).hexdigest()[:32]
     written["model.h"] = f'#define MODEL_GUID "{guid}"\n' + written["model.h"]
-    return description(variables, name, guid, meaning, version), written
+    if fmi == 3:
+        written["buildDescription.xml"] = build_description(name)
+    return description(variables, name, guid, meaning, version, fmi), written
