@@ -81,7 +81,7 @@ def test_cylinder(
     for M, T, F, way in zip(moment, tension, force, (1.0, -1.0), strict=True):
         found = friction.slip_moment(at, T, p)
         assert_allclose(1e3 * found, M, rtol=1e-12)
-        memory = friction.Crossing(jnp.asarray(-10.0 * way), found)  # long since slipping
+        memory = friction.Remembered(jnp.asarray(-10.0 * way), found)  # long since slipping
         by_length = float(friction.pull(at, p, memory)) * np.sin(ANGLE) / np.cos(theta)
         spacing = 2.0 * np.pi * RADIUS / (FIBRES * np.cos(ANGLE))
         assert_allclose(by_length, way * FIBRES * found / (spacing * np.cos(theta)), rtol=1e-13)
@@ -91,7 +91,7 @@ def test_cylinder(
 def test_energy_of_a_step() -> None:
     """Its derivative is the moment, on both sides of slipping and through it; what slips is remembered."""
     p = parameters(rubbing())
-    memory = friction.Crossing(jnp.asarray(0.01), jnp.asarray(2e-5))
+    memory = friction.Remembered(jnp.asarray(0.01), jnp.asarray(2e-5))
     for beta in (-0.3, 0.0079, 0.008, 0.0081, 0.0105, 0.0119, 0.0121, 0.4):
         theta = float(ANGLE + 0.5 * beta)
 

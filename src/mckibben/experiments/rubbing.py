@@ -14,7 +14,7 @@ import numpy as np
 from mckibben.measure.report import Part
 from mckibben.measure.rub import Stepped, fresh, rub
 from mckibben.measure.survey import ROUNDING, Memories, Survey, survey
-from mckibben.model.friction import Crossing
+from mckibben.model.friction import Remembered
 from mckibben.solver.bench import QUICK, Bench, sizes_for
 from mckibben.solver.held import Held, rows_of, targets_of
 from mckibben.solver.path import INTERRUPTED, Watch
@@ -39,7 +39,7 @@ class Going:
     """Where a path has come: the last state, what its points remember from now on, and what it reads."""
 
     state: Unknowns
-    outer: Crossing
+    outer: Remembered
     present: dict[str, float]  #: length, volume, force and pressure in SI units
     dissipated: float = 0.0  #: since the muscle was made [J]
     iterations: int = 0
@@ -49,7 +49,7 @@ class Going:
     @classmethod
     def as_made(cls, problem: Problem) -> "Going":
         """The muscle as made."""
-        inner, outer = (Crossing(*map(np.asarray, one)) for one in fresh(problem.basis, problem.p))
+        inner, outer = jax.tree.map(np.asarray, fresh(problem.basis, problem.p))
         start = Unknowns(np.zeros(problem.basis.unknowns), np.zeros(problem.loads), inner)
         present = {"length": problem.unit[1], "volume": problem.unit[2], "force": 0.0, "pressure": 0.0}
         return cls(start, outer, {name: float(value) for name, value in present.items()})

@@ -1,9 +1,11 @@
-"""One step of a muscle whose crossings rub: the state at new targets, from what its points remember.
+"""One step of a muscle whose crossings or chamber rub: the state at new targets, from what its points remember.
 
-Newton minimises the energy of the step at fixed moments M; the tension of the state found gives M anew, until it
-settles. Then the memory moves on. All of it is one compiled function.
+Newton minimises the energy of the step at fixed moments M, and forces at which the chamber slides; the tension and the
+pressure on the mesh of the state found give them anew, until they settle. Then the memory moves on. All of it is one
+compiled function.
 """
 
+from functools import partial
 from typing import Any, NamedTuple
 
 import jax
@@ -14,11 +16,12 @@ from mckibben.compiled.arrays import Array
 from mckibben.compiled.kernel import kernel
 from mckibben.discretise.fields import Placed, place, points_at, states
 from mckibben.measure.read import costates, nodes
-from mckibben.model.energy import works
-from mckibben.model.friction import Crossing, after_step, as_made, crossings, slip_moment, turn
+from mckibben.model.energy import remember, works
+from mckibben.model.friction import Remembered, as_made, crossings, slip_moment, turn
 from mckibben.model.gap import inflated
 from mckibben.model.parameters import Number, Parameters
 from mckibben.model.point import Point
+from mckibben.model.slide import grip, slide_limit
 from mckibben.model.tension import tension
 from mckibben.solver.held import conditions
 from mckibben.solver.newton import correct
@@ -34,19 +37,22 @@ CLOSE = 1e-9
 ROUNDS = 20
 """Sets of moments at most; each is closer than the one before by about mu a/l, some hundredth."""
 SETTLED = 1e-8
-"""Largest change of a moment in the last round over the largest moment, at most."""
+"""Largest change of a moment, or of the chamber's limit, in the last round over the largest one, at most."""
 ROUGH, SHARE = 1e-4, 1e-2
 """What is enough of `CLOSE` in a round whose moments are not the last: the first one, and over the change of moments in
 the round before in the others."""
+SLOW, LEAST = 0.6, 0.125
+"""Of a chamber that slides: change of a Newton step, over that of the one before, above which the next is halved, lest
+points go on changing between sticking and sliding; and the least part that is taken of a step."""
 
 
 class Stepped(NamedTuple):
     """A state with what it was found from and what it leaves behind."""
 
     state: Unknowns  #: with the memory of its quadrature points as the step began, and the moments it ended with
-    kept: Crossing  #: the same of the output points
-    next_inner: Crossing  #: what the points remember from now on
-    next_outer: Crossing
+    kept: Remembered  #: the same of the output points
+    next_inner: Remembered  #: what the points remember from now on
+    next_outer: Remembered
     totals: Float[Array, "2"]  #: length [m] and volume [m^3]
     dissipated: Float[Array, ""]  #: in this step [J]
     largest_turn: Float[Array, ""]  #: of a crossing in this step [rad]
@@ -56,18 +62,18 @@ class Stepped(NamedTuple):
 
 class _Round(NamedTuple):
     state: Unknowns
-    outer: Crossing
-    change: Array  #: largest change of a moment over the largest moment
+    outer: Remembered
+    change: Array  #: largest change of a moment over the largest moment, and the same of the chamber's limits
     step: Array  #: largest change of an unknown in the last Newton step
     rounds: Array
     iterations: Array
     good: Array
 
 
-def fresh(basis: Basis, p: Parameters) -> tuple[Crossing, Crossing]:
+def fresh(basis: Basis, p: Parameters) -> tuple[Remembered, Remembered]:
     """Memories as made, of the quadrature points and the output points."""
     made, counts = as_made(p), (basis.points, nodes(basis))
-    inner, outer = (Crossing(*(jnp.full(count, one) for one in made)) for count in counts)
+    inner, outer = (jax.tree.map(partial(jnp.full, count), made) for count in counts)
     return inner, outer
 
 
@@ -77,7 +83,7 @@ def rub(
     p: Parameters,
     b: Number,
     state: Unknowns,
-    kept: Crossing,
+    kept: Remembered,
     which: Int[Array, " l"],
     targets: Float[Array, " l"],
     stuck: Bool[Array, ""],
@@ -88,7 +94,7 @@ def rub(
     limit are so by a rounding error.
     """
     basis, own = static
-    on = place(basis, p, b)
+    on, slides = place(basis, p, b), p.friction.chamber is not None
 
     def newton(state: Unknowns) -> tuple[Unknowns, Array, Array]:
         s = system(basis, on, state)
@@ -97,21 +103,26 @@ def rub(
         return new, jnp.abs(c.step.u).max(), c.stable
 
     def solved(start: Unknowns, stuck: Array, close: Array) -> tuple[Unknowns, Array, Array, Array]:
-        moment = start.memory.moment
+        sticks = _stuck(start.memory, p)
 
         def more(now: Any) -> Array:
-            _, change, taken, stable = now
+            _, change, taken, stable, _ = now
             return (change > close) & (taken < CORRECTIONS) & stable
 
         def again(now: Any) -> Any:
-            state, _, taken, _ = now
-            held = jnp.where(stuck & (taken == 0), jnp.full_like(moment, p.friction.stiffness), moment)
-            new, change, stable = newton(state._replace(memory=start.memory._replace(moment=held)))
-            return new, change, taken + 1, stable
+            state, before, taken, _, share = now
+            first = stuck & (taken == 0)
+            held = jax.tree.map(lambda one, other: jnp.where(first, one, other), sticks, start.memory)
+            new, change, stable = newton(state._replace(memory=held))
+            if slides:
+                share = jnp.where(change > SLOW * before, 0.5 * share, 1.4 * share)
+                share = jnp.clip(share, LEAST, 1.0)
+                new = jax.tree.map(lambda a, b: a + share * (b - a), state, new._replace(memory=state.memory))
+            return new, change, taken + 1, stable, share
 
-        begin = (start, jnp.asarray(jnp.inf), jnp.zeros((), int), jnp.array(True))
-        found, change, taken, stable = jax.lax.while_loop(more, again, begin)
-        return found._replace(memory=start.memory), change, taken, stable & (change <= close)
+        begin = (start, jnp.asarray(jnp.inf), jnp.zeros((), int), jnp.array(True), jnp.ones(()))
+        found, change, taken, stable, _ = jax.lax.while_loop(more, again, begin)
+        return found._replace(memory=start.memory), change, taken, stable if slides else stable & (change <= close)
 
     def more(now: _Round) -> Array:
         return ((now.change > SETTLED) | (now.step > CLOSE)) & (now.rounds < ROUNDS) & now.good
@@ -119,11 +130,10 @@ def rub(
     def again(now: _Round) -> _Round:
         close = jnp.clip(SHARE * now.change, CLOSE, ROUGH)
         found, step, taken, good = solved(now.state, stuck & (now.rounds == 0), close)
-        inner, outer = moments(basis, on, found, now.outer)
-        change = jnp.abs(inner - found.memory.moment).max() / jnp.maximum(inner.max(), 1e-300)
+        inner, outer = limits(basis, on, found, now.outer)
+        change = _change(inner, found.memory, on)
         return _Round(
-            found._replace(memory=found.memory._replace(moment=inner)), now.outer._replace(moment=outer), change, step,
-            now.rounds + 1, now.iterations + taken, good,
+            found._replace(memory=inner), outer, change, step, now.rounds + 1, now.iterations + taken, good
         )  # fmt: skip
 
     none = jnp.zeros((), int)
@@ -138,7 +148,7 @@ def _after(basis: Basis, on: Placed, begun: Unknowns, found: _Round) -> Stepped:
     p, state = on.p, found.state
     inner, outer = states(basis, on, state.u), points_at(basis, on, state.u, basis.sampling(nodes(basis)))
     next_inner, next_outer = (
-        jax.vmap(lambda at, memory: after_step(at, p, memory))(at, memory)
+        jax.vmap(lambda at, memory: remember(at, p, memory))(at, memory)
         for at, memory in ((inner, state.memory), (outer, found.outer))
     )
 
@@ -151,17 +161,39 @@ def _after(basis: Basis, on: Placed, begun: Unknowns, found: _Round) -> Stepped:
     slipped = mean * jnp.abs(next_inner.alpha - state.memory.alpha)
     weights = jnp.asarray(basis.operators().weights) * on.jacobian
     many = crossings(inner, p)
+    lost = many * (weights @ slipped) if inner.made is None else weights @ (many * slipped)
+    if state.memory.slid is not None:
+        mean = 0.5 * (begun.memory.limit + state.memory.limit)
+        lost = lost + weights @ (mean * jnp.abs(next_inner.slid - state.memory.slid))
     settled = (found.change <= SETTLED) & (found.step <= CLOSE)
     good = found.good & settled & jnp.isfinite(state.u).all()
     return Stepped(
         state, found.outer, next_inner, next_outer, jnp.stack([weights @ one for one in rates[:2]]),
-        many * (weights @ slipped) if inner.made is None else weights @ (many * slipped),
-        jnp.abs(turned(inner) - turned(states(basis, on, begun.u))).max(), found.iterations, good,
+        lost, jnp.abs(turned(inner) - turned(states(basis, on, begun.u))).max(), found.iterations, good,
     )  # fmt: skip
 
 
-def moments(basis: Basis, on: Placed, state: Unknowns, kept: Crossing) -> tuple[Array, Array]:
-    """M by the tension of a state, at the quadrature points and at the output points."""
+def _stuck(memory: Remembered, p: Parameters) -> Remembered:
+    """A memory by which nothing slips: not within a turn of 1 rad and a slide of H0."""
+    sticks = memory._replace(moment=jnp.full_like(memory.moment, p.friction.stiffness))
+    return sticks if memory.slid is None else sticks._replace(limit=jnp.full_like(memory.limit, p.H0 * grip(p)))
+
+
+def _change(new: Remembered, old: Remembered, on: Placed) -> Array:
+    """Largest change of a moment over the largest one, and the same of the forces at which the chamber slides.
+
+    Forces that would move the chamber by less than `CLOSE` of H0 are none: they are not told by their largest.
+    """
+    change = jnp.abs(new.moment - old.moment).max() / jnp.maximum(new.moment.max(), 1e-300)
+    if new.slid is None:
+        return change
+    least = CLOSE / SETTLED * on.unit[0] / on.p.H0**2
+    return jnp.maximum(change, jnp.abs(new.limit - old.limit).max() / jnp.maximum(new.limit.max(), least))
+
+
+def limits(basis: Basis, on: Placed, state: Unknowns, kept: Remembered) -> tuple[Remembered, Remembered]:
+    """Memories with M by the tension of a state and the chamber's limit by its pressure on the mesh, of the quadrature
+    points and of the output points, whose own is `kept`."""
     p, sampling = on.p, basis.sampling(nodes(basis))
     F, P = state.loads[0] * on.unit[0] / on.unit[1], state.loads[1] * on.unit[0] / on.unit[2]
     M = state.loads[2] * on.unit[0] if basis.closes else 0.0
@@ -169,8 +201,10 @@ def moments(basis: Basis, on: Placed, state: Unknowns, kept: Crossing) -> tuple[
     inner, outer = (jax.vmap(lambda at: inflated(at, P, p))(one) for one in (inner, outer))
     along = costates(basis, on, inner, (F, P, M), sampling, state.memory)
 
-    def moment(at: Point, c: tuple[Array, ...], memory: Crossing) -> Number:
-        return slip_moment(at, tension(at, c, F, P, p, memory), p)
+    def moment(at: Point, c: tuple[Array, ...], memory: Remembered) -> Remembered:
+        moment = slip_moment(at, tension(at, c, F, P, p, memory), p)
+        limit = None if memory.slid is None else slide_limit(at, P, p)
+        return memory._replace(moment=moment, limit=limit)
 
     found, shown = (
         jax.vmap(moment)(at, c, memory) for at, c, memory in ((inner, along[0], state.memory), (outer, along[1], kept))
