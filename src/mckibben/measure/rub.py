@@ -28,7 +28,7 @@ from mckibben.solver.newton import correct
 from mckibben.solver.problem import Basis
 from mckibben.solver.system import Unknowns, system
 
-__all__ = ["Stepped", "fresh", "rub"]
+__all__ = ["Stepped", "fresh", "rub", "rub_along"]
 
 CORRECTIONS = 40
 """Newton systems at most for one set of moments: a few where all crossings go on, some ten where they turn back."""
@@ -44,6 +44,10 @@ the round before in the others."""
 SLOW, LEAST = 0.6, 0.125
 """Of a chamber that slides: change of a Newton step, over that of the one before, above which the next is halved, lest
 points go on changing between sticking and sliding; and the least part that is taken of a step."""
+
+STRAIGHT, FORETOLD = 1e-6, 4.0
+"""Of a step along a path: how far it may lie off the direction of the one before, over its length, and how many times
+as long it may be, for its state to be foretold from the two before."""
 
 
 class Stepped(NamedTuple):
@@ -62,7 +66,6 @@ class Stepped(NamedTuple):
 
 class _Round(NamedTuple):
     state: Unknowns
-    outer: Remembered
     change: Array  #: largest change of a moment over the largest moment, and the same of the chamber's limits
     step: Array  #: largest change of an unknown in the last Newton step
     rounds: Array
@@ -75,6 +78,74 @@ def fresh(basis: Basis, p: Parameters) -> tuple[Remembered, Remembered]:
     made, counts = as_made(p), (basis.points, nodes(basis))
     inner, outer = (jax.tree.map(partial(jnp.full, count), made) for count in counts)
     return inner, outer
+
+
+class _Way(NamedTuple):
+    """How far a path has been walked."""
+
+    done: Array
+    state: Unknowns  #: with what its points remember from now on
+    outer: Remembered
+    before: Unknowns  #: the state before, with the moments that it ended with
+    rows: Stepped
+    going: Array
+
+
+@kernel
+def rub_along(
+    static: tuple[Basis, Any],
+    p: Parameters,
+    b: Number,
+    state: Unknowns,
+    kept: Remembered,
+    which: Int[Array, " l"],
+    targets: Float[Array, "n l"],
+    count: Int[Array, ""],
+    farthest: Float[Array, ""],
+) -> Stepped:
+    """One state after another at `targets`, of which the first are those of `state`, and as many as `count` count.
+
+    It ends after a step that is not good, or in which a crossing turns by more than `farthest` [rad]; rows after that
+    are zero, and not good. A path that goes straight on is foretold from the two states before; where it turns round,
+    the first Newton step is taken as if no crossing slipped.
+    """
+    basis, own = static
+    on = place(basis, p, b)
+
+    def step(k: Array, way: _Way) -> Stepped:
+        last, now, to = targets[jnp.maximum(k - 1, 0)], targets[k], targets[k + 1]
+        ahead, was = to - now, now - last
+        share = ahead @ was / jnp.maximum(was @ was, 1e-300)
+        straight = (k > 0) & (share > 0.0) & (share <= FORETOLD)
+        straight = straight & (jnp.abs(ahead - share * was).max() <= STRAIGHT * jnp.abs(ahead).max())
+        share = jnp.where(straight, share, 0.0)
+        guess = _foretold(way.before, way.state, share)
+        return _stepped(basis, own, on, way.state, guess, way.outer, which, to, ~straight)
+
+    def more(way: _Way) -> Array:
+        return (way.done < count) & way.going
+
+    def again(way: _Way) -> _Way:
+        found = step(way.done, way)
+        rows = jax.tree.map(lambda row, new: row.at[way.done].set(new), way.rows, found)
+        new = found.state._replace(memory=found.next_inner)
+        good = found.good & (found.largest_turn <= farthest)
+        return _Way(way.done + 1, new, found.next_outer, way.state, rows, good)
+
+    none = jnp.zeros((), int)
+    blank = jax.eval_shape(lambda: _stepped(basis, own, on, state, state, kept, which, targets[0], jnp.array(True)))
+    rows = jax.tree.map(lambda one: jnp.zeros((len(targets) - 1, *one.shape), one.dtype), blank)
+    start = _Way(none, state, kept, state, rows, jnp.array(True))
+    walked: Stepped = jax.lax.while_loop(more, again, start).rows
+    return walked
+
+
+def _foretold(before: Unknowns, now: Unknowns, share: Array) -> Unknowns:
+    """What a state is sought from, by a share of the last step: shape, loads, and at what the points slip."""
+    u, loads = (new + share * (new - old) for new, old in zip(now[:2], before[:2], strict=True))
+    memory, old = now.memory, before.memory
+    moment = jnp.maximum(memory.moment + share * (memory.moment - old.moment), 0.0)
+    return Unknowns(u, loads, memory._replace(moment=moment))
 
 
 @kernel
@@ -94,7 +165,16 @@ def rub(
     limit are so by a rounding error.
     """
     basis, own = static
-    on, slides = place(basis, p, b), p.friction.chamber is not None
+    return _stepped(basis, own, place(basis, p, b), state, state, kept, which, targets, stuck)
+
+
+def _stepped(
+    basis: Basis, own: Any, on: Placed, begun: Unknowns, guess: Unknowns, kept: Remembered, which: Array,
+    targets: Array, stuck: Array,
+) -> Stepped:  # fmt: skip
+    """The state at `targets` from the state `begun`, sought from a guess."""
+    p = on.p
+    slides = p.friction.chamber is not None
 
     def newton(state: Unknowns) -> tuple[Unknowns, Array, Array]:
         s = system(basis, on, state)
@@ -130,26 +210,24 @@ def rub(
     def again(now: _Round) -> _Round:
         close = jnp.clip(SHARE * now.change, CLOSE, ROUGH)
         found, step, taken, good = solved(now.state, stuck & (now.rounds == 0), close)
-        inner, outer = limits(basis, on, found, now.outer)
+        inner = limits(basis, on, found)
         change = _change(inner, found.memory, on)
-        return _Round(
-            found._replace(memory=inner), outer, change, step, now.rounds + 1, now.iterations + taken, good
-        )  # fmt: skip
+        return _Round(found._replace(memory=inner), change, step, now.rounds + 1, now.iterations + taken, good)
 
     none = jnp.zeros((), int)
     far = jnp.asarray(jnp.inf)
-    start = _Round(state, kept, far, far, none, none, jnp.array(True))
+    start = _Round(guess, far, far, none, none, jnp.array(True))
     found = jax.lax.while_loop(more, again, start)
-    return _after(basis, on, state, found)
+    return _after(basis, on, begun, found, outer_limits(basis, on, found.state, kept))
 
 
-def _after(basis: Basis, on: Placed, begun: Unknowns, found: _Round) -> Stepped:
+def _after(basis: Basis, on: Placed, begun: Unknowns, found: _Round, kept: Remembered) -> Stepped:
     """What a step from a state leaves behind."""
     p, state = on.p, found.state
     inner, outer = states(basis, on, state.u), points_at(basis, on, state.u, basis.sampling(nodes(basis)))
     next_inner, next_outer = (
         jax.vmap(lambda at, memory: remember(at, p, memory))(at, memory)
-        for at, memory in ((inner, state.memory), (outer, found.outer))
+        for at, memory in ((inner, state.memory), (outer, kept))
     )
 
     def turned(at: Point) -> Array:
@@ -168,7 +246,7 @@ def _after(basis: Basis, on: Placed, begun: Unknowns, found: _Round) -> Stepped:
     settled = (found.change <= SETTLED) & (found.step <= CLOSE)
     good = found.good & settled & jnp.isfinite(state.u).all()
     return Stepped(
-        state, found.outer, next_inner, next_outer, jnp.stack([weights @ one for one in rates[:2]]),
+        state, kept, next_inner, next_outer, jnp.stack([weights @ one for one in rates[:2]]),
         lost, jnp.abs(turned(inner) - turned(states(basis, on, begun.u))).max(), found.iterations, good,
     )  # fmt: skip
 
@@ -191,22 +269,40 @@ def _change(new: Remembered, old: Remembered, on: Placed) -> Array:
     return jnp.maximum(change, jnp.abs(new.limit - old.limit).max() / jnp.maximum(new.limit.max(), least))
 
 
-def limits(basis: Basis, on: Placed, state: Unknowns, kept: Remembered) -> tuple[Remembered, Remembered]:
-    """Memories with M by the tension of a state and the chamber's limit by its pressure on the mesh, of the quadrature
-    points and of the output points, whose own is `kept`."""
-    p, sampling = on.p, basis.sampling(nodes(basis))
-    F, P = state.loads[0] * on.unit[0] / on.unit[1], state.loads[1] * on.unit[0] / on.unit[2]
-    M = state.loads[2] * on.unit[0] if basis.closes else 0.0
+def limits(basis: Basis, on: Placed, state: Unknowns) -> Remembered:
+    """What the quadrature points remember, with M by the tension of a state and the chamber's limit by its pressure on
+    the mesh."""
+    p, (F, P, M) = on.p, _loads(basis, on, state)
+    at = jax.vmap(lambda at: inflated(at, P, p))(states(basis, on, state.u))
+    along = costates(basis, on, at, (F, P, M), basis.sampling(nodes(basis)), state.memory)[0]
+    found: Remembered = jax.vmap(partial(_limit, F, P, p))(at, along, state.memory)
+    return found
+
+
+def outer_limits(basis: Basis, on: Placed, state: Unknowns, kept: Remembered) -> Remembered:
+    """The same of the output points, whose own memory is `kept`: by as many rounds as their moments need."""
+    p, (F, P, M), sampling = on.p, _loads(basis, on, state), basis.sampling(nodes(basis))
     inner, outer = states(basis, on, state.u), points_at(basis, on, state.u, sampling)
     inner, outer = (jax.vmap(lambda at: inflated(at, P, p))(one) for one in (inner, outer))
-    along = costates(basis, on, inner, (F, P, M), sampling, state.memory)
+    along = costates(basis, on, inner, (F, P, M), sampling, state.memory)[1]
 
-    def moment(at: Point, c: tuple[Array, ...], memory: Remembered) -> Remembered:
-        moment = slip_moment(at, tension(at, c, F, P, p, memory), p)
-        limit = None if memory.slid is None else slide_limit(at, P, p)
-        return memory._replace(moment=moment, limit=limit)
+    def more(now: tuple[Remembered, Array, Array]) -> Array:
+        return (now[1] > SETTLED) & (now[2] < ROUNDS)
 
-    found, shown = (
-        jax.vmap(moment)(at, c, memory) for at, c, memory in ((inner, along[0], state.memory), (outer, along[1], kept))
-    )
-    return found, shown
+    def again(now: tuple[Remembered, Array, Array]) -> tuple[Remembered, Array, Array]:
+        new = jax.vmap(partial(_limit, F, P, p))(outer, along, now[0])
+        return new, _change(new, now[0], on), now[2] + 1
+
+    found: Remembered = jax.lax.while_loop(more, again, (kept, jnp.asarray(jnp.inf), jnp.zeros((), int)))[0]
+    return found
+
+
+def _loads(basis: Basis, on: Placed, state: Unknowns) -> tuple[Any, Any, Any]:
+    """Force [N], pressure [Pa] and closing moment."""
+    F, P = state.loads[0] * on.unit[0] / on.unit[1], state.loads[1] * on.unit[0] / on.unit[2]
+    return F, P, state.loads[2] * on.unit[0] if basis.closes else 0.0
+
+
+def _limit(F: Number, P: Number, p: Parameters, at: Point, c: tuple[Array, ...], memory: Remembered) -> Remembered:
+    moment = slip_moment(at, tension(at, c, F, P, p, memory), p)
+    return memory._replace(moment=moment, limit=None if memory.slid is None else slide_limit(at, P, p))
