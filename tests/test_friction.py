@@ -81,7 +81,7 @@ def test_cylinder(
     for M, T, F, way in zip(moment, tension, force, (1.0, -1.0), strict=True):
         found = friction.slip_moment(at, T, p)
         assert_allclose(1e3 * found, M, rtol=1e-12)
-        memory = friction.Crossing(jnp.asarray(-10.0 * way), found)  # long since slipping
+        memory = friction.Remembered(jnp.asarray(-10.0 * way), found)  # long since slipping
         by_length = float(friction.pull(at, p, memory)) * np.sin(ANGLE) / np.cos(theta)
         spacing = 2.0 * np.pi * RADIUS / (FIBRES * np.cos(ANGLE))
         assert_allclose(by_length, way * FIBRES * found / (spacing * np.cos(theta)), rtol=1e-13)
@@ -91,7 +91,7 @@ def test_cylinder(
 def test_energy_of_a_step() -> None:
     """Its derivative is the moment, on both sides of slipping and through it; what slips is remembered."""
     p = parameters(rubbing())
-    memory = friction.Crossing(jnp.asarray(0.01), jnp.asarray(2e-5))
+    memory = friction.Remembered(jnp.asarray(0.01), jnp.asarray(2e-5))
     for beta in (-0.3, 0.0079, 0.008, 0.0081, 0.0105, 0.0119, 0.0121, 0.4):
         theta = float(ANGLE + 0.5 * beta)
 
@@ -249,12 +249,38 @@ def test_what_was_reached_on_few_unknowns_is_kept(monkeypatch: pytest.MonkeyPatc
     fine = mk.run(rubbing(), isobaric(110, 112), tolerance=1e-5)
     step = rubbing_module.step_to
     monkeypatch.setattr(
-        rubbing_module, "step_to", lambda problem, *rest: step(problem, *rest) if problem.basis.size < 48 else None
+        rubbing_module,
+        "step_to",
+        lambda problem, *rest, **named: None if problem.basis.dense else step(problem, *rest, **named),
     )
     found = mk.run(rubbing(), isobaric(110, 112), tolerance=1e-9)
     assert found.verdict == ("stable", "stable")
     assert 1e-9 < float(found.data["error_estimate"].max()) < 1e-2
     assert_allclose(found.force, fine.force, rtol=1e-3)
+
+
+def test_many_states_at_once_or_one_by_one(monkeypatch: pytest.MonkeyPatch) -> None:
+    """A path walked in compiled code, its states foretold, is that walked state by state from sticking crossings."""
+    test = isobaric(*np.linspace(104, 110, 7), 109.5, 108.5, 107.5)
+    at_once = mk.run(rubbing(BOTH), test, tolerance=1e-2)
+    along = rubbing_module._along
+    monkeypatch.setattr(
+        rubbing_module, "_along", lambda one, here, begin, path, *rest: along(one, here, begin, path[:1], *rest)
+    )
+    one_by_one = mk.run(rubbing(BOTH), test, tolerance=1e-2)
+    assert_allclose(at_once.force, one_by_one.force, rtol=1e-9)
+    assert_allclose(at_once.data["dissipated"], one_by_one.data["dissipated"], rtol=1e-8)
+    assert at_once.data["iterations"].sum() < one_by_one.data["iterations"].sum()
+
+
+def test_error_estimates_hold() -> None:
+    """Those of few points against many: at a fixed length, where the border of sticking crossings wanders."""
+    test = mk.Isometric(length="105 mm", pressure="0 to 1 to 0 bar", points=15)
+    rough, fine = mk.run(rubbing(BOTH), test, tolerance=1e-2), mk.run(rubbing(BOTH), test, tolerance=1e-6)
+    load = np.maximum(np.abs(fine.force), np.pi * RADIUS**2 * fine.pressure)
+    estimate = rough.data["error_estimate"].values
+    assert (np.abs(rough.force - fine.force) < (estimate + fine.data["error_estimate"].values) * load).all()
+    assert fine.data["error_estimate"].max() < 0.7 * estimate.max() < 1e-2
 
 
 def test_with_fibres_that_stretch_and_roll() -> None:

@@ -38,7 +38,7 @@ Number: TypeAlias = Any
 
 DISPLAY = {
     "m": "mm", "Pa": "bar", "rad": "deg", "m^3": "mL", "N m^2": "N mm^2", "N m": "N mm", "J": "mJ", "m/N": "mm/N",
-    "m^3/s/Pa": "L/s/bar",
+    "m^3/s/Pa": "L/s/bar", "Pa/m": "MPa/mm",
 }  # fmt: skip
 """The unit each SI unit is shown in, where it is not itself."""
 
@@ -226,6 +226,7 @@ def from_si(value: Any, unit: str) -> Any:
 _SI = (
     "m", "N", "Pa", "rad", "m^3", "N m^2", "J", "J/m", "1/m", "m^2", "N/m", "m/N", "kg", "kg/m^3", "J/kg", "s", "K",
     "1/s", "m/s", "rad/s", "m/s^2", "N s/m", "N m s", "kg m^2", "W/K", "kg/s", "m^3/s", "m^3/s/Pa",
+    "Pa/m",
 )  # fmt: skip
 """SI units of what the package knows."""
 

@@ -10,7 +10,7 @@ import attrs
 import numpy as np
 
 from mckibben.charts import edges as of_edges
-from mckibben.charts.friction import with_friction
+from mckibben.charts.friction import check_map, with_friction
 from mckibben.charts.sample import Samples, sample
 from mckibben.charts.series import Edges, Scales, fitted, scales_of
 from mckibben.measure.report import versions
@@ -80,6 +80,7 @@ def chart(
     (True, 101.2)
     """
     if muscle.friction is not None:
+        check_map(muscle)
         plain = chart(
             evolved(muscle, friction=None), length=length, pressure=pressure, tolerance=tolerance, watch=watch
         )

@@ -20,7 +20,7 @@ from mckibben.spec.declared import evolved
 from mckibben.spec.text import to_toml
 from mckibben.units import show
 
-__all__ = ["with_friction"]
+__all__ = ["check_map", "with_friction"]
 
 STATES = (13, 9)
 """Lengths and pressures of the states of which the series are made."""
@@ -43,6 +43,14 @@ class _Branches:
     low: np.ndarray  #: as the muscle shortens
     high: np.ndarray  #: as it lengthens
     sticking: np.ndarray
+
+
+def check_map(muscle: Muscle) -> None:
+    """SpecError for friction that a map does not know."""
+    if muscle.friction is not None and muscle.friction.chamber_coefficient is not None:
+        said = "does not go with a map, whose rule of friction knows the crossings alone"
+        advice = 'leave it out for the map: muscle.replace("friction.chamber_coefficient", None)'
+        raise SpecError("friction.chamber_coefficient", muscle.friction.chamber_coefficient, said, advice)
 
 
 def with_friction(muscle: Muscle, plain: Chart, watch: Callable[[int, int], None]) -> Chart:

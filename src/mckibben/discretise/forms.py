@@ -20,17 +20,21 @@ from mckibben.model.point import Made, Point
 
 __all__ = ["line_form"]
 
-ORDERS = {"psi": 0, "kappa": 1, "excess": 1, "turn": 0, "roll": 0, "roll_rate": 1, "give": 0}
+ORDERS = {"psi": 0, "kappa": 1, "excess": 1, "turn": 0, "roll": 0, "roll_rate": 1, "slide": 0, "slide_rate": 1,
+          "give": 0}  # fmt: skip
 """How often each field is differentiated by v; what happens at a fitting, turn or give, is the same all along v."""
 ANGLES = {"theta", "psi", "turn", "roll"}
 """What enters by its sine and cosine alone."""
 
 
 @cache
-def line_form(stretch: bool, roll: bool, give: bool, free: bool) -> Form:
+def line_form(stretch: bool, roll: bool, slide: bool, give: bool, free: bool) -> Form:
     """The form of a line with some of the effects, and with its end radius free or held."""
     integrated = ("theta", "log_stretch") if stretch else ("theta",)
-    effects = (("excess", "turn") if stretch else (), ("roll", "roll_rate") if roll else (), ("give",) if give else ())
+    effects = (
+        ("excess", "turn") if stretch else (), ("roll", "roll_rate") if roll else (),
+        ("slide", "slide_rate") if slide else (), ("give",) if give else (),
+    )  # fmt: skip
     fields = ("psi", "kappa", *chain(*effects))
     names = (*integrated, *fields)
 
@@ -38,6 +42,8 @@ def line_form(stretch: bool, roll: bool, give: bool, free: bool) -> Form:
         at = dict(zip(names, x, strict=True))
         stretched = _stretch(at["log_stretch"], None if free else at["turn"], p) if stretch else None
         effects = {name: at.get(name) for name in ("roll", "roll_rate", "give")}
+        if slide:
+            effects |= {name: p.H0 * at[name] for name in ("slide", "slide_rate")}
         return Point(at["theta"], at["psi"], at["kappa"], stretched, _excess(at, made), **effects, made=made)
 
     def turning(x: Variables, p: Parameters, made: Made | None) -> Number:

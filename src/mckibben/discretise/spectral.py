@@ -2,7 +2,7 @@
 
 v = H0/2 (1 + tanh(b x)/tanh(b)), x in [-1, 1]. Symmetric shapes have psi odd about mid-length, so half the length and
 the odd polynomials suffice; their small antisymmetric disturbances have psi even; the full line takes both. Stretch and
-roll of the fibres are series of their own beside it, of the same symmetry.
+roll of the fibres and the slide of the chamber, over H0, are series of their own beside it, of the same symmetry.
 """
 
 from functools import lru_cache, reduce
@@ -27,9 +27,10 @@ Modes = Literal["odd", "even", "all"]
 class Line:
     """A space of slopes psi: `size` modes, their symmetry about mid-length, and the ends they satisfy.
 
-    The unknowns u are the coefficients of the modes: of psi, of the excess where the fibres stretch, and of their roll;
-    then what changes at the ends: the braid angle where the radius is free or the fibres stretch, the logarithm of
-    their stretch where both is so, and the give of the fittings, which antisymmetric disturbances do not touch.
+    The unknowns u are the coefficients of the modes: of psi, of the excess where the fibres stretch, of their roll, and
+    of the chamber's slide; then what changes at the ends: the braid angle where the radius is free or the fibres
+    stretch, the logarithm of their stretch where both is so, and the give of the fittings, which antisymmetric
+    disturbances do not touch.
     """
 
     size: int
@@ -38,6 +39,8 @@ class Line:
     stretch: bool = False  #: whether the fibres stretch
     roll: bool = False  #: whether they roll
     give: bool = False  #: whether the fittings give way
+    slide: bool = False  #: whether the chamber slides along the mesh
+    dense: bool = False  #: whether it has twice the points, for kinks that lie between them
 
     @classmethod
     def of(cls, muscle: Muscle, size: int) -> "Line":
@@ -49,17 +52,18 @@ class Line:
         roll, give, profile = muscle.braid.joint == Joint.PIN, muscle.gives_way, muscle.braid.angle_profile
         whole = len(muscle.end_radii or ()) == 2 or (profile is not None and not profile.mirrored)
         count, modes = (2 * size, "all") if whole else (size, "odd")
-        return cls(count, str(muscle.ends), modes, muscle.braid.fibre.stretch, roll, give)  # type: ignore[arg-type]
+        slide = muscle.friction is not None and muscle.friction.chamber_coefficient is not None
+        return cls(count, str(muscle.ends), modes, muscle.braid.fibre.stretch, roll, give, slide)  # type: ignore[arg-type]
 
     @property
     def form(self) -> Form:
         """What the local variables mean."""
-        return line_form(self.stretch, self.roll, self.give, self.ends == "free")
+        return line_form(self.stretch, self.roll, self.slide, self.give, self.ends == "free")
 
     @property
     def points(self) -> int:
-        """Quadrature points: 1.5 m + 8 on the half line, a rule that was safe on hard cases."""
-        return int(1.5 * self.size) + 8
+        """Quadrature points: 1.5 m + 8 on the half line, a rule that was safe on hard cases; 3 m + 8 where dense."""
+        return int((3.0 if self.dense else 1.5) * self.size) + 8
 
     @property
     def half(self) -> bool:
@@ -70,7 +74,8 @@ class Line:
     def series(self) -> dict[str, slice]:
         """The unknowns of each field with a series: the excess is small and takes half the modes."""
         found, first = {}, 0
-        for name, there in (("psi", True), ("excess", self.stretch), ("roll", self.roll)):
+        effects = (("psi", True), ("excess", self.stretch), ("roll", self.roll), ("slide", self.slide))
+        for name, there in effects:
             if there:
                 last = first + ((self.size + 1) // 2 if name == "excess" else self.size)
                 found[name], first = slice(first, last), last
@@ -206,7 +211,8 @@ def _at(line: Line, x: Floats) -> tuple[tuple[Floats, ...], tuple[Floats, ...]]:
     ends = [wide(np.ones((len(x), 1)), line.unknowns - line.turns + k) for k in range(line.turns)]
     tables = []
     for name, part in line.series.items():
-        series = _modes(line.modes, part.stop - part.start, clamped=line.ends == "clamped" and name != "excess")
+        held = name == "slide" or (line.ends == "clamped" and name != "excess")  # any fitting holds the chamber
+        series = _modes(line.modes, part.stop - part.start, clamped=held)
         value, slope = (wide(legendre.legval(x, some).T, part.start) for some in (series, legendre.legder(series)))
         tables += [value, ends[0]] if name == "excess" else [value, slope]
     nothing = wide(np.zeros((len(x), 0)), 0)

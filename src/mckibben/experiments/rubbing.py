@@ -5,6 +5,7 @@ holds the pressure, that comes first, at the length as made; then the other quan
 """
 
 from collections.abc import Sequence
+from functools import partial
 from typing import Any
 
 import attrs
@@ -12,9 +13,9 @@ import jax
 import numpy as np
 
 from mckibben.measure.report import Part
-from mckibben.measure.rub import Stepped, fresh, rub
-from mckibben.measure.survey import ROUNDING, Memories, Survey, survey
-from mckibben.model.friction import Crossing
+from mckibben.measure.rub import Stepped, fresh, rub_along
+from mckibben.measure.survey import ROUNDING, Memories, Survey, error_bound, survey
+from mckibben.model.friction import Remembered
 from mckibben.solver.bench import QUICK, Bench, sizes_for
 from mckibben.solver.held import Held, rows_of, targets_of
 from mckibben.solver.path import INTERRUPTED, Watch
@@ -29,8 +30,16 @@ LARGEST_TURN = 0.05
 """Largest turn of a crossing [rad] in one step of the path; a longer way is taken in parts."""
 LARGEST = 48
 """Unknowns up to which a path is walked anew: the error that the kink of the moment leaves falls slowly."""
+SERIES = 0.5
+"""Error by how the series end, over that found, up to which it is points that a path lacks, not unknowns."""
+NEARBY = 2
+"""States before and after one whose differences count as its own."""
 SMALLEST = 1.0 / 1024.0
 """Smallest part of the way from state to state."""
+SHORTER = 0.9
+"""Share of `LARGEST_TURN` that is aimed at where a way is taken in parts: crossings do not turn evenly along it."""
+AT_ONCE = 32
+"""States that are walked in compiled code before they are looked at."""
 LOST = "no state was found on from the one before: the shape gives way, or there is none"
 
 
@@ -39,7 +48,7 @@ class Going:
     """Where a path has come: the last state, what its points remember from now on, and what it reads."""
 
     state: Unknowns
-    outer: Crossing
+    outer: Remembered
     present: dict[str, float]  #: length, volume, force and pressure in SI units
     dissipated: float = 0.0  #: since the muscle was made [J]
     iterations: int = 0
@@ -49,38 +58,76 @@ class Going:
     @classmethod
     def as_made(cls, problem: Problem) -> "Going":
         """The muscle as made."""
-        inner, outer = (Crossing(*map(np.asarray, one)) for one in fresh(problem.basis, problem.p))
+        inner, outer = jax.tree.map(np.asarray, fresh(problem.basis, problem.p))
         start = Unknowns(np.zeros(problem.basis.unknowns), np.zeros(problem.loads), inner)
         present = {"length": problem.unit[1], "volume": problem.unit[2], "force": 0.0, "pressure": 0.0}
         return cls(start, outer, {name: float(value) for name, value in present.items()})
 
 
 def step_to(
-    problem: Problem, here: Going, begin: Held, end: Held, shares: tuple[float, ...] = ()
+    problem: Problem, here: Going, begin: Held, end: Held, shares: tuple[float, ...] = (), turn: float | None = None
 ) -> Going | None:  # fmt: skip
     """From a state at which `begin` holds, straight to `end`; in parts where crossings turn far or Newton fails.
 
     `shares` are those of a way of a muscle that is near: with the same parts, results change smoothly from muscle to
-    muscle.
+    muscle. `turn` is that of a crossing where the way was tried in one step, infinite where no state was found.
     """
-    own, which = rows_of(end.names, problem.loads)
-    share, part, iterations = 0.0, 1.0, here.iterations
-    now, taken, left = attrs.evolve(here, iterations=0), [], list(shares)
+    now, share, left = here, 0.0, list(shares)
+    taken: list[float] = []
+    parts = 1 if turn is None else _parts(1.0, 1.0, turn)
     while share < 1.0:
-        to = left[0] if left else share + part
-        if to - share < SMALLEST:
+        ways = left or [*np.linspace(share, 1.0, parts + 1)[1:-1].tolist(), 1.0]
+        if ways[0] - share < SMALLEST:
             return None
-        aim = end if to >= 1.0 else begin.towards(end, to)
-        targets = targets_of((aim,), problem.unit, problem.loads)[0]
-        stuck = np.asarray(True)
-        found = rub((problem.basis, own), problem.p, problem.b, now.state, now.outer, which, targets, stuck)
-        if not found.good or found.largest_turn > (2.0 * LARGEST_TURN if left else LARGEST_TURN):
-            part, left = 0.5 * (to - share), []
-            continue
-        now = _moved(problem, now, jax.tree.map(np.asarray, found))
-        share, part, left = to, min(2.0 * (to - share), 1.0), left[1:]
-        taken.append(min(share, 1.0))
-    return attrs.evolve(now, iterations=now.iterations + iterations, shares=tuple(taken))
+        aims = [end if to >= 1.0 else begin.towards(end, to) for to in ways]
+        at, most = begin if share == 0.0 else begin.towards(end, share), 2.0 * LARGEST_TURN if left else LARGEST_TURN
+        walk = _along(problem, now, at, aims, most)
+        for one, to in zip(walk.states, ways, strict=False):
+            now, share = attrs.evolve(one, iterations=one.iterations + (now.iterations if taken else 0)), to
+            taken.append(to)
+        done, left = len(walk.states), left[len(walk.states) :]
+        if walk.turn is not None:
+            parts, left = _parts(1.0 - share, ways[done] - share, walk.turn), []
+        elif not left:
+            parts = max(parts - done, 1)
+    return attrs.evolve(now, shares=tuple(taken))
+
+
+def _parts(way: float, tried: float, turn: float) -> int:
+    """In how many parts a way is taken of which one was too long: by how far a crossing turned, or half as long."""
+    shorter = SHORTER * LARGEST_TURN / turn if np.isfinite(turn) else 0.5
+    return int(np.ceil(way / (tried * shorter) - 1e-9))
+
+
+@attrs.frozen
+class _Walk:
+    """States in one step each, and why there are no more."""
+
+    states: list[Going]
+    turn: float | None  #: by how much crossings turned in a step that was too long, or infinity; None where all is done
+
+
+def _along(problem: Problem, here: Going, begin: Held, path: Sequence[Held], farthest: float = LARGEST_TURN) -> _Walk:
+    """The first states of a path from one at which `begin` holds, each in one step, as far as that goes: at most
+    `AT_ONCE`, in compiled code."""
+    path = path[:AT_ONCE]
+    own, which = rows_of(begin.names, problem.loads)
+    targets = targets_of((begin, *path, *([path[-1]] * (AT_ONCE - len(path)))), problem.unit, problem.loads)
+    rows = rub_along(
+        (problem.basis, own), problem.p, problem.b, here.state, here.outer, which, targets, np.asarray(len(path)),
+        np.asarray(farthest),
+    )  # fmt: skip
+    rows = jax.tree.map(np.asarray, rows)
+    states: list[Going] = []
+    now = here
+    for k in range(len(path)):
+        turn = float(rows.largest_turn[k]) if rows.good[k] else np.inf
+        if turn > farthest:
+            return _Walk(states, turn)
+        one: Stepped = jax.tree.map(lambda row, k=k: row[k], rows)
+        now = _moved(problem, attrs.evolve(now, iterations=0), one)
+        states.append(now)
+    return _Walk(states, None)
 
 
 def _moved(problem: Problem, now: Going, found: Stepped) -> Going:
@@ -124,14 +171,43 @@ def rubbed(
     for size in (size for size in sizes_for("spectral", tolerance) if QUICK < size <= LARGEST):
         if _interrupted(legs) or (errors and all((error <= tolerance).all() for error in errors)):
             break
-        finer = bench.problem(size, b)
+        finer = _finer(bench, problem, size, legs, errors)
         again = _walked(bench, finer, steps, watch)
         if _reached(again) < _reached(legs) and not _interrupted(again):
             break  # short waves may lose the way: what was reached is kept
         errors = [_differences(bench, *pair) for pair in zip(again, legs, strict=True)]
+        if getattr(finer.basis, "dense", False):  # the same series on more points: the difference knows it not
+            errors = [np.maximum(*pair) for pair in zip(errors, map(partial(_by_tail, finer), again), strict=True)]
         problem, legs = finer, again
     errors = errors or [np.full(len(leg.states), np.nan) for leg in legs]
     return [_part(problem, *pair) for pair in zip(legs, errors, strict=True)]
+
+
+def _finer(bench: Bench, problem: Problem, size: int, legs: list[_Leg], errors: list[np.ndarray]) -> Problem:
+    """What a path is walked on next: the same series on twice the points, where they are what is amiss, or `size`.
+
+    Where slipping crossings border on sticking ones, the sum over the points misses what lies between two of them; by
+    more unknowns alone that does not become less. A chamber that slides has a stress that jumps, which takes unknowns.
+    """
+    smooth = problem.p.friction.chamber is None
+    if smooth and errors and _largest([_by_tail(problem, leg) for leg in legs]) <= SERIES * _largest(errors):
+        basis = attrs.evolve(problem.basis, dense=True)  # type: ignore[arg-type, unused-ignore]
+        return Problem.of(basis, bench.p, problem.b)
+    return bench.problem(size, problem.b)
+
+
+def _by_tail(problem: Problem, leg: _Leg) -> np.ndarray:
+    """Relative error of force and length by how the series end (n)."""
+    if not leg.states:
+        return np.zeros(0)
+    tail = problem.basis.tail(np.stack([one.state.u for one in leg.states]))
+    return error_bound(np.full(len(tail), np.nan), tail, True)
+
+
+def _largest(errors: list[np.ndarray]) -> float:
+    """The largest number that is one; 0 where there is none."""
+    every = np.concatenate(errors)
+    return float(np.nanmax(every, initial=0.0)) if np.isfinite(every).any() else 0.0
 
 
 def _interrupted(legs: list[_Leg]) -> bool:
@@ -144,13 +220,17 @@ def _reached(legs: list[_Leg]) -> int:
 
 
 def _differences(bench: Bench, leg: _Leg, coarse: _Leg) -> np.ndarray:
-    """Of length and force from those of a coarser space, over the length and the axial load of mesh and chamber."""
+    """Of length and force from those of a coarser space, over the length and the axial load of mesh and chamber.
+
+    What a kink between two points leaves vanishes where it happens to lie well, so that the states nearby count too.
+    """
     area, found = float(np.pi * bench.p.R0**2), []
     for one, other in zip(leg.states, coarse.states, strict=False):
         now, then = one.present, other.present
         load = max(abs(now["force"]), abs(area * now["pressure"]), 1e-300)
         by_load = max(abs(now["force"] - then["force"]), area * abs(now["pressure"] - then["pressure"])) / load
         found.append(max(by_load, abs(now["length"] - then["length"]) / now["length"]))
+    found = [max(found[max(k - NEARBY, 0) : k + NEARBY + 1]) for k in range(len(found))]
     return np.array(found + [np.nan] * (len(leg.states) - len(found)))
 
 
@@ -181,16 +261,22 @@ def _states(problem: Problem, here: Going, path: Sequence[Held], watch: Any, fir
     states: list[Going] = []
     try:
         now = _pressurised(problem, here, path[0]) if first and path else here
-        for k, held in enumerate(path):
-            if now is None:
-                return states, LOST
+        if now is None:
+            return states, LOST
+        while len(states) < len(path):
+            k, held = len(states), path[len(states)]
             begin = Held(held.names, tuple(now.present[name] for name in held.names)) if not k else path[k - 1]
-            found = step_to(problem, attrs.evolve(now, iterations=0), begin, held)
-            if found is None:
-                return states, LOST
-            states.append(found)
-            now = found
-            watch(k + 1, len(path))
+            walk = _along(problem, now, begin, path[k:])
+            found = walk.states
+            if not found:  # the next is too far for one step
+                parts = step_to(problem, now, begin, held, turn=walk.turn)
+                if parts is None:
+                    return states, LOST
+                found = [parts]
+            now = found[-1]
+            for one in found:
+                states.append(one)
+                watch(len(states), len(path))
     except KeyboardInterrupt:  # the part reached is worth keeping
         return states, INTERRUPTED
     return states, "converged"

@@ -7,7 +7,8 @@ import numpy as np
 
 from mckibben.experiments.rubbing import Going
 from mckibben.measure.rub import Stepped, rub
-from mckibben.model.friction import Crossing
+from mckibben.model.friction import Remembered
+from mckibben.model.parameters import Rubbing
 from mckibben.solver.bench import Bench
 from mckibben.solver.equilibrium import Equilibrium
 from mckibben.solver.held import Held, rows_of, targets_of
@@ -52,15 +53,16 @@ def _sliding(bench: Bench, free: Equilibrium, way: float) -> float | None:
 @one_thread()
 def sticking(bench: Bench, free: Equilibrium) -> float | None:
     """What crossings that all stick, free of moment in a state without friction, add to its stiffness dF/dh [N/m]."""
+    law = _at_crossings(bench)
     loose, stiff = (
-        attrs.evolve(free.problem, p=bench.p._replace(friction=bench.p.friction._replace(arm=0.0, moment=moment)))
+        attrs.evolve(free.problem, p=bench.p._replace(friction=law._replace(arm=0.0, moment=moment)))
         for moment in (0.0, HELD)
     )
     made, held, step = Going.as_made(loose), Held.of(length=free.length, pressure=free.pressure), NUDGE * free.length
     there = _rubbed(loose, Unknowns(free.u, free.loads, made.state.memory), made.outer, held)
     if not there.good:
         return None
-    memories = [Crossing(np.asarray(one.alpha), np.full(len(one.alpha), HELD))
+    memories = [Remembered(np.asarray(one.alpha), np.full(len(one.alpha), HELD))
                 for one in (there.next_inner, there.next_outer)]  # fmt: skip
     further = Held.of(length=free.length + step, pressure=free.pressure)
     slack = _rubbed(loose, there.state._replace(memory=made.state.memory), made.outer, further)
@@ -70,19 +72,25 @@ def sticking(bench: Bench, free: Equilibrium) -> float | None:
     return float((tight.state.loads[0] - slack.state.loads[0]) * free.problem.load_unit[1] / step)
 
 
+def _at_crossings(bench: Bench) -> Rubbing:
+    """Friction at the crossings alone: which way a chamber slides is a matter of the path, so it is held here."""
+    law: Rubbing = bench.p.friction._replace(chamber=None, grip=None)
+    return law
+
+
 def _found(bench: Bench, free: Equilibrium, start: Any, way: float, share: float) -> Unknowns | None:
     """The state in which all crossings slip with a share of the friction, from one with less."""
-    friction = bench.p.friction
+    friction = _at_crossings(bench)
     less = friction._replace(arm=share * friction.arm, moment=share * friction.moment)
     problem = attrs.evolve(free.problem, p=bench.p._replace(friction=less))
     made = Going.as_made(problem)
-    inner, outer = (Crossing(one.alpha - way * FAR, one.moment) for one in (made.state.memory, made.outer))
+    inner, outer = (Remembered(one.alpha - way * FAR, one.moment) for one in (made.state.memory, made.outer))
     held = Held.of(length=free.length, pressure=free.pressure)
     found = _rubbed(problem, Unknowns(np.asarray(start.u), np.asarray(start.loads), inner), outer, held)
     return found.state if found.good else None
 
 
-def _rubbed(problem: Problem, state: Unknowns, outer: Crossing, held: Held) -> Stepped:
+def _rubbed(problem: Problem, state: Unknowns, outer: Remembered, held: Held) -> Stepped:
     """One step from a state with its memory to what is held."""
     own, which = rows_of(held.names, problem.loads)
     targets = targets_of((held,), problem.unit, problem.loads)[0]

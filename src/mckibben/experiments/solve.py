@@ -83,7 +83,9 @@ def _without_path(muscle: Muscle, step: Step, held: Held, tolerance: float) -> S
     found = answer(bench, held, tolerance)
     state = _state(bench, muscle, step, held, found)
     forces = None if found.given is None else sliding_forces(Bench.of(muscle), found.given.state)
-    said = "without friction, since what it does depends on the path (run)"
+    slides = muscle.friction is not None and muscle.friction.chamber_coefficient is not None
+    chamber = ", the chamber held to the mesh" if slides else ""
+    said = f"without friction{chamber}, since what it does depends on the path (run)"
     if forces is not None:
         low, high = (show(force, "N", 5) for force in forces)
         said += f"; with it the force is from {low}, as the muscle shortens, to {high}, as it lengthens"

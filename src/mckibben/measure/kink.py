@@ -20,6 +20,7 @@ from mckibben.model.gap import borne
 from mckibben.model.kinematics import facing, stretches
 from mckibben.model.parameters import Number, Parameters
 from mckibben.model.point import Point
+from mckibben.model.wall import lying
 from mckibben.solver.problem import Basis
 from mckibben.solver.system import System, Unknowns
 
@@ -56,7 +57,7 @@ class Missed(NamedTuple):
 def presses(at: Point, P: Number, p: Parameters) -> tuple[Number, Number]:
     """q [Pa], along the axis, by which the tube presses at the mesh's radius (it is free below 0), and k [m^2/Pa]."""
     hoop, axial, _ = stretches(at, p)
-    bears, slope = jax.value_and_grad(borne)(hoop, axial, p)
+    bears, slope = jax.value_and_grad(borne)(hoop, axial, lying(at, p))
     return P * facing(at) - bears, 2.0 * jnp.pi * p.R0**2 * hoop * axial / slope
 
 

@@ -26,6 +26,7 @@ from mckibben.model.gap import contact_of, inflated, leaves
 from mckibben.model.kinematics import fibre_strains, height_rate, radius, volume_rate
 from mckibben.model.parameters import Number, Parameters
 from mckibben.model.point import Point
+from mckibben.model.slide import shear_stress, slide_density
 from mckibben.model.tension import conserved, tension
 from mckibben.model.wall import chamber_density, chamber_pull, chamber_stretches, contact_pressure
 from mckibben.solver.newton import batch_size, positive
@@ -133,7 +134,8 @@ def _densities(at: Point, p: Parameters, memory: Any = None) -> dict[str, Number
     parts = dict(zip(ENERGIES, (*fibre_densities(at, p), chamber_density(at, p)), strict=True))
     parts = parts if at.stretch is None else parts | {"stretch": axial_density(at, p)}
     parts = parts if at.give is None else parts | {"fittings": fittings_density(at, p)}
-    return parts if memory is None else parts | {"crossings": crossing_density(at, p, memory)}
+    parts = parts if memory is None else parts | {"crossings": crossing_density(at, p, memory)}
+    return parts if memory is None or memory.slid is None else parts | {"sliding": slide_density(at, p, memory)}
 
 
 Costates = tuple[Array, ...]
@@ -197,6 +199,8 @@ def _fields(
         effects["roll"] = radians(at.roll)
     if memory is not None:
         effects["crossing_moment"] = crossing_moment(at, p, memory)
+        if memory.slid is not None:
+            effects |= {"slide": at.slide, "shear_stress": shear_stress(at, p, memory)}
     return effects | {
         "theta": radians(at.theta), "psi": radians(at.psi), "r": radius(at, p),
         "stretch_hoop": hoop, "stretch_axial": axial, "stretch_thickness": thickness,

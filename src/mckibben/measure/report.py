@@ -22,8 +22,8 @@ from mckibben.spec import Muscle, Test
 
 NUMBERS = (
     "length", "contraction", "force", "pressure", "volume", "air_volume", "contact",
-    *(f"energy_{name}" for name in ENERGIES), "energy_stretch", "energy_fittings", "energy_crossings", "energy",
-    "dissipated", "residual", "error_estimate", "coefficient_tail", "conserved_variation",
+    *(f"energy_{name}" for name in ENERGIES), "energy_stretch", "energy_fittings", "energy_crossings",
+    "energy_sliding", "energy", "dissipated", "residual", "error_estimate", "coefficient_tail", "conserved_variation",
 )  # fmt: skip
 
 

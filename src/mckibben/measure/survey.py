@@ -36,7 +36,7 @@ STRETCHED = 0.998
 """Share of full extension beyond which the variation of the conserved quantity says too little of the force."""
 PLAIN_SLOPE = 1.5
 """Slope [rad] of the meridian below which no shape is anything but ordinary."""
-ODD = ("psi", "u1", "roll")
+ODD = ("psi", "u1", "roll", "slide", "shear_stress")
 """Fields that change sign at mid-length of a symmetric state."""
 PLAIN = Modes(0, 0, 0, float("nan"), float("nan"), float("nan"))
 """Of a state that is stable in every way: nothing was counted."""

@@ -17,6 +17,7 @@ from mckibben.model.gap import leaves, relaxed_density
 from mckibben.model.kinematics import closure_rate, height_rate, volume_rate
 from mckibben.model.parameters import Number, Parameters
 from mckibben.model.point import Point
+from mckibben.model.slide import after_slide, slide_energy
 from mckibben.model.wall import chamber_density
 
 __all__ = ["LOADS", "QUANTITIES", "fittings_density", "lagrangian", "remember", "scales", "stored", "works"]
@@ -31,15 +32,19 @@ LOADS = ("force", "pressure", "moment")
 def stored(at: Point, p: Parameters, memory: Any = None, P: Any = None, found: Any = None) -> Number:
     """Stored energy per unit v [J/m]: fibres (Eq. 20) and chamber (Eq. 26).
 
-    `memory` is what a material point keeps of the state before: with friction, a `Crossing`. Without one the crossings
-    turn freely. Given a pressure P [Pa], a chamber with a gap counts with the work that is not done on the gap, so that
-    less P times the volume of the mesh it is what a state makes stationary; `found` is its hoop stretch, if known.
+    `memory` is what a material point keeps of the state before: with friction, a `Remembered`. Without one crossings
+    turn freely and a chamber slides freely, if it may. Given a pressure P [Pa], a chamber with a gap counts with the
+    work that is not done on the gap, so that less P times the volume of the mesh it is what a state makes stationary;
+    `found` is its hoop stretch, if known.
     """
     gap = P is not None and leaves(p)
     energy = sum(fibre_densities(at, p)) + (relaxed_density(at, P, p, found) if gap else chamber_density(at, p))
     energy = energy if at.stretch is None else energy + axial_density(at, p)
     energy = energy if at.give is None else energy + fittings_density(at, p)
-    return energy if p.friction is None or memory is None else energy + incremental_density(at, p, memory)
+    if p.friction is None or memory is None:
+        return energy
+    energy = energy + incremental_density(at, p, memory)
+    return energy if memory.slid is None else energy + slide_energy(at, p, memory)
 
 
 def fittings_density(at: Point, p: Parameters) -> Number:
@@ -49,7 +54,10 @@ def fittings_density(at: Point, p: Parameters) -> Number:
 
 def remember(at: Point, p: Parameters, memory: Any) -> Any:
     """What a material point keeps once it has been in a state, from what it kept before."""
-    return memory if p.friction is None else after_step(at, p, memory)
+    if p.friction is None:
+        return memory
+    memory = after_step(at, p, memory)
+    return memory if memory.slid is None else after_slide(at, p, memory)
 
 
 def works(at: Point, p: Parameters) -> tuple[Number, Number, Number]:

@@ -8,7 +8,7 @@ in which alpha, the turn at which it would be free of moment, is what it remembe
 before, a step minimises an energy that has tau for its derivative.
 """
 
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import jax.numpy as jnp
 
@@ -18,7 +18,7 @@ from mckibben.model.parameters import Number, Parameters
 from mckibben.model.point import Point, made_angle
 
 __all__ = [
-    "Crossing",
+    "Remembered",
     "after_step",
     "as_made",
     "crossing_density",
@@ -27,20 +27,26 @@ __all__ = [
     "incremental_density",
     "pull",
     "slip_moment",
+    "step_energy",
     "turn",
 ]
 
 
-class Crossing(NamedTuple):
-    """What the crossings at a material point remember as a step begins."""
+class Remembered(NamedTuple):
+    """What crossings and chamber at a material point remember as a step begins."""
 
     alpha: Number  #: turn at which a crossing is free of moment [rad]
     moment: Number  #: M at which it slips in this step [N m]
+    slid: Any = None  #: slide at which the chamber is free of shear [m]; None where it is held to the mesh
+    limit: Any = None  #: force per unit v at which it slides in this step [N/m]
 
 
-def as_made(p: Parameters) -> Crossing:
-    """Crossings that have not turned yet and carry no moment."""
-    return Crossing(0.0 * p.friction.moment, p.friction.moment)
+def as_made(p: Parameters) -> Remembered:
+    """Crossings that have not turned yet and carry no moment, beside a chamber that lies as it was mounted."""
+    none, chamber = 0.0 * p.friction.moment, (None, None)
+    if p.friction.chamber is not None:
+        chamber = none, none
+    return Remembered(none, p.friction.moment, *chamber)
 
 
 def spacing(at: Point, p: Parameters) -> Number:
@@ -66,29 +72,32 @@ def slip_moment(at: Point, tension: Number, p: Parameters) -> Number:
     return p.friction.moment + p.friction.arm * pressed * jnp.maximum(tension, 0.0)
 
 
-def incremental_density(at: Point, p: Parameters, memory: Crossing) -> Number:
+def incremental_density(at: Point, p: Parameters, memory: Remembered) -> Number:
     """Energy per unit v [J/m] that a step from `memory` stores and dissipates: quadratic, beyond M linear."""
-    k, M = p.friction.stiffness, memory.moment
-    x = turn(at, p) - memory.alpha
+    return crossings(at, p) * step_energy(turn(at, p) - memory.alpha, p.friction.stiffness, memory.moment)
+
+
+def step_energy(x: Number, k: Number, most: Number) -> Number:
+    """What has clip(k x, -most, most) for its derivative by x: quadratic, beyond `most` linear."""
     size = jnp.abs(x)
-    return crossings(at, p) * jnp.where(k * size < M, 0.5 * k * x * x, M * size - 0.5 * M * M / k)
+    return jnp.where(k * size < most, 0.5 * k * x * x, most * size - 0.5 * most * most / k)
 
 
-def crossing_moment(at: Point, p: Parameters, memory: Crossing) -> Number:
+def crossing_moment(at: Point, p: Parameters, memory: Remembered) -> Number:
     """Moment tau of a crossing [N m], positive where the braid was last lengthened."""
     return jnp.clip(p.friction.stiffness * (turn(at, p) - memory.alpha), -memory.moment, memory.moment)
 
 
-def crossing_density(at: Point, p: Parameters, memory: Crossing) -> Number:
+def crossing_density(at: Point, p: Parameters, memory: Remembered) -> Number:
     """Energy that the crossings store per unit v [J/m]: it comes back when they are let go."""
     return 0.5 * crossings(at, p) * crossing_moment(at, p, memory) ** 2 / p.friction.stiffness
 
 
-def pull(at: Point, p: Parameters, memory: Crossing) -> Number:
+def pull(at: Point, p: Parameters, memory: Remembered) -> Number:
     """Derivative of the incremental energy by theta [J/m]."""
     return 2.0 * crossings(at, p) * crossing_moment(at, p, memory)
 
 
-def after_step(at: Point, p: Parameters, memory: Crossing) -> Crossing:
+def after_step(at: Point, p: Parameters, memory: Remembered) -> Remembered:
     """What the crossings remember once they have been in a state."""
     return memory._replace(alpha=turn(at, p) - crossing_moment(at, p, memory) / p.friction.stiffness)

@@ -14,7 +14,7 @@ from jax.custom_derivatives import SymbolicZero
 from mckibben.model.kinematics import facing, radius, stretches
 from mckibben.model.parameters import Number, Parameters
 from mckibben.model.point import Point
-from mckibben.model.wall import mean_density
+from mckibben.model.wall import lying, mean_density
 from mckibben.spec.laws import ArrudaBoyce, Gent, NeoHookean
 
 __all__ = ["STEADY", "borne", "contact_of", "found_hoop", "inflated", "leaves", "peak", "pressed", "relaxed_density"]
@@ -148,6 +148,7 @@ def _is_zero(leaf: Any) -> bool:
 
 def found_hoop(at: Point, P: Number, p: Parameters) -> Number:
     """H of a state at a gauge pressure P [Pa], as a number that nothing depends on."""
+    p = lying(at, p)
     hoop, axial, _ = stretches(at, p)
     return search(*jax.lax.stop_gradient((hoop, axial, P * facing(at))), jax.lax.stop_gradient(p))
 
@@ -158,14 +159,14 @@ def inflated(at: Point, P: Number, p: Parameters, found: Any = None) -> Point:
         return at
     found = found_hoop(at, P, p) if found is None else found
     hoop, axial, _ = stretches(at, p)
-    return at._replace(blown=settled(found, hoop, axial, P * facing(at), p))
+    return at._replace(blown=settled(found, hoop, axial, P * facing(at), lying(at, p)))
 
 
 def relaxed_density(at: Point, P: Number, p: Parameters, found: Any = None) -> Number:
     """Energy of a chamber with a gap per unit v, and the work not done on the gap [J/m]: w_c + P pi (r^2 - a^2) s c."""
     found = found_hoop(at, P, p) if found is None else found
     hoop, axial, _ = stretches(at, p)
-    return relaxed(found, hoop, axial, P * facing(at), p)
+    return relaxed(found, hoop, axial, P * facing(at), lying(at, p))
 
 
 def contact_of(at: Point, P: Number, p: Parameters) -> tuple[Number, Number, Number]:
@@ -178,7 +179,7 @@ def contact_of(at: Point, P: Number, p: Parameters) -> tuple[Number, Number, Num
 def pressed(at: Point, P: Number, p: Parameters) -> Number:
     """Pressure [Pa] of the chamber on the mesh where they touch; below 0 where P would have to grow for that."""
     hoop, axial, _ = stretches(at, p)
-    return P - borne(hoop, axial, p) / facing(at)
+    return P - borne(hoop, axial, lying(at, p)) / facing(at)
 
 
 def peak(p: Parameters) -> tuple[Number, Number]:

@@ -40,12 +40,14 @@ class Tube(NamedTuple):
 
 
 class Rubbing(NamedTuple):
-    """Numbers of the friction at the crossings, in SI units."""
+    """Numbers of the friction at the crossings and between chamber and mesh, in SI units."""
 
     arm: Number  #: friction coefficient times its arm, mu a [m]
     moment: Number  #: part of the moment that does not depend on tension, m0 [N m]
     stiffness: Number  #: k of a crossing that sticks [N m/rad]
     diameter: Number  #: d of a fibre [m]; 0 where mu a is 0 and it does not matter
+    chamber: Any = None  #: friction coefficient between chamber and mesh; None where they are held together
+    grip: Any = None  #: shear stress per slide of a chamber that sticks [Pa/m]; None where it is held
 
 
 class Parameters(NamedTuple):
@@ -128,8 +130,9 @@ def _rubbing(muscle: Muscle) -> Rubbing | None:
         return None
     arm = 0.0 if friction.arm is None else friction.arm
     return Rubbing(
-        friction.coefficient * arm, friction.constant, friction.stiffness, 0.0 if diameter is None else diameter
-    )
+        friction.coefficient * arm, friction.constant, friction.stiffness, 0.0 if diameter is None else diameter,
+        friction.chamber_coefficient, friction.grip,
+    )  # fmt: skip
 
 
 def _law(law: Any) -> Any:

@@ -34,6 +34,8 @@ class Point(NamedTuple):
     roll_rate: Any = None  #: its derivative phi' = d phi/dv [rad/m]
     give: Any = None  #: by how much the fittings give way, over H0: the same at all points; None where they are rigid
     blown: Any = None  #: hoop stretch, of R0, of a chamber that may leave the braid; None where it never does
+    slide: Any = None  #: how far along v [m] the chamber's rubber here was mounted from; None where it never slides
+    slide_rate: Any = None  #: its derivative by v
     made: Any = None  #: how the braid was made here, a `Made`; None where it has one angle
 
     @classmethod

@@ -115,4 +115,7 @@ def conserved(at: Point, costates: tuple[Number, ...], F: Number, P: Number, p: 
     if at.roll is not None:
         by_twist = jax.grad(lambda rate: lagrangian(at._replace(roll_rate=rate), p, F, P))(at.roll_rate)
         parts.append(at.roll_rate * by_twist)
+    if at.slide is not None:
+        by_slide = jax.grad(lambda rate: lagrangian(at._replace(slide_rate=rate), p, F, P))(at.slide_rate)
+        parts.append(at.slide_rate * by_slide)
     return sum(parts), reduce(jnp.add, map(jnp.abs, parts))

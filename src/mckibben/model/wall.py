@@ -21,6 +21,7 @@ __all__ = [
     "chamber_pull",
     "chamber_stretches",
     "contact_pressure",
+    "lying",
     "mean_density",
     "touching_pressure",
 ]
@@ -62,6 +63,16 @@ def _mounted(hoop: Number, axial: Number, p: Parameters) -> tuple[Number, Number
     return (hoop, axial) if p.tube is None else (hoop * p.tube.hoop, axial * p.tube.axial)
 
 
+def lying(at: Point, p: Parameters) -> Parameters:
+    """A muscle's numbers with the chamber that lies beside a point: where it has slid there, 1 + slide' times as much
+    rubber per unit v, which is stretched less by as much; NaN where it would be turned inside out."""
+    if at.slide_rate is None:
+        return p
+    assert p.tube is not None
+    share = jnp.where(at.slide_rate > -1.0, 1.0 + at.slide_rate, jnp.nan)
+    return p._replace(A0=p.A0 * share, tube=p.tube._replace(axial=p.tube.axial / share))
+
+
 def _beside(at: Point, p: Parameters) -> tuple[Number, Number]:
     """Hoop and axial stretch of the chamber in those of the mesh: the mesh's own, or less where it has left it."""
     hoop, axial, _ = stretches(at, p)
@@ -73,6 +84,7 @@ def chamber_stretches(at: Point, p: Parameters) -> tuple[Number, Number, Number]
 
     Those of bellows are of the surface that their folds lie in; the wall itself keeps its thickness.
     """
+    p = lying(at, p)
     hoop, axial, thickness = stretches(at, p)
     if p.tube is not None:
         hoop, axial = _mounted(*_beside(at, p), p)
@@ -82,12 +94,14 @@ def chamber_stretches(at: Point, p: Parameters) -> tuple[Number, Number, Number]
 
 def chamber_density(at: Point, p: Parameters) -> Number:
     """Energy of the chamber per unit v [J/m]: A0 psi(C) (Eq. 26)."""
+    p = lying(at, p)
     hoop, axial = _beside(at, p)
     return _rubber(p) * mean_density(hoop, axial, p)
 
 
 def chamber_pull(at: Point, p: Parameters) -> Number:
     """Meridian force of the chamber [N]: A0 d(psi)/d(lambda2) at fixed hoop stretch of the mesh."""
+    p = lying(at, p)
     hoop, axial = _beside(at, p)
     return _rubber(p) * jax.grad(lambda a: mean_density(hoop, a, p))(axial)
 
@@ -97,6 +111,7 @@ def contact_pressure(at: Point, P: Number, p: Parameters) -> Number:
 
     P - [cos(psi) dw/dr - kappa dw/ds] / (2 pi r s), normal equilibrium of the chamber as a surface (theory page).
     """
+    p = lying(at, p)
     hoop, axial, _ = stretches(at, p)
     by_hoop, by_axial = jax.grad(lambda h, a: mean_density(h, a, p), argnums=(0, 1))(hoop, axial)
     borne = by_hoop * cos(at.psi) / p.R0 - by_axial * at.kappa

@@ -20,7 +20,7 @@ __all__ = ["look", "solved"]
 PARTS = {
     "energy_chamber": "chamber", "energy_bending_1": "bending in the surface",
     "energy_bending_2": "bending normal to it", "energy_twist": "twist", "energy_stretch": "stretch",
-    "energy_fittings": "fittings", "energy_crossings": "crossings",
+    "energy_fittings": "fittings", "energy_crossings": "crossings", "energy_sliding": "sliding",
 }  # fmt: skip
 """Parts of the stored energy and their names."""
 

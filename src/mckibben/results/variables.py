@@ -19,8 +19,9 @@ STEP: dict[str, tuple[str, str]] = {
     "energy_stretch": ("J", "fibre energy, stretch"),
     "energy_fittings": ("J", "energy of the fittings, which give way"),
     "energy_crossings": ("J", "energy that crossings store elastically"),
+    "energy_sliding": ("J", "energy that the grip of the mesh on the chamber stores elastically"),
     "energy": ("J", "stored energy"),
-    "dissipated": ("J", "energy lost by friction at the crossings since the muscle was made"),
+    "dissipated": ("J", "energy lost by friction since the muscle was made"),
     "work": ("J", "work done on the muscle since the first state"),
     "verdict": ("", "verdict"),
     "reason": ("", "reason for the verdict"),
@@ -59,6 +60,8 @@ FIELDS: dict[str, tuple[str, str]] = {
     "density_stretch": ("J/m", "fibre energy per unit v, stretch"),
     "roll": ("rad", "angle by which a fibre's section has turned about the fibre"),
     "crossing_moment": ("N m", "moment of one crossing, positive against lengthening"),
+    "slide": ("m", "how far from here along v, towards the last end, the chamber beside it was mounted"),
+    "shear_stress": ("Pa", "shear stress of the mesh on the chamber, positive towards the last end"),
     "gap": ("m", "distance between chamber and mesh, 0 where they touch"),
     "share_mesh": ("1", "share of the axial load F + pi r^2 P carried by the mesh"),
     "share_chamber": ("1", "share of the axial load F + pi r^2 P carried by the chamber"),
@@ -85,6 +88,11 @@ EXTREMES: dict[str, tuple[str, str]] = {
 }
 """What tables show of a state's fields: unit and meaning. A muscle without a breaking force has no safety factor."""
 
+
+def _slides(muscle: Muscle) -> bool:
+    return muscle.friction is not None and muscle.friction.chamber_coefficient is not None
+
+
 OPTIONAL: dict[str, Callable[[Muscle], bool]] = {
     "energy_stretch": lambda muscle: muscle.braid.fibre.stretch,
     "fibre_stretch": lambda muscle: muscle.braid.fibre.stretch,
@@ -96,6 +104,9 @@ OPTIONAL: dict[str, Callable[[Muscle], bool]] = {
     "energy_crossings": lambda muscle: muscle.friction is not None,
     "dissipated": lambda muscle: muscle.friction is not None,
     "crossing_moment": lambda muscle: muscle.friction is not None,
+    "energy_sliding": _slides,
+    "slide": _slides,
+    "shear_stress": _slides,
 }
 """Variables that only some muscles have."""
 

@@ -1,17 +1,23 @@
-"""Friction where fibres cross, as measured or assumed: `Friction`."""
+"""Friction where fibres cross, and of the chamber along the mesh, as measured or assumed: `Friction`."""
 
 from __future__ import annotations
 
 from typing import Any
 
+from mckibben.spec.bellows import Bellows
+from mckibben.spec.chamber import Chamber
 from mckibben.spec.declared import Reads
 from mckibben.spec.errors import SpecError
 from mckibben.spec.fields import quantity, spec
-from mckibben.units import is_traced
+from mckibben.units import Number, is_traced
 
 __all__ = ["Friction", "check_friction"]
 
 _SOURCE = "theory page, friction at the crossings"
+_SLIDES = "theory page, friction between chamber and mesh"
+
+GRIP = 1e8
+"""Shear stress per slide [Pa/m] of a chamber that sticks, where none is given."""
 
 
 @spec("friction")
@@ -30,10 +36,16 @@ class Friction:
         stiffness: moment per angle k of a crossing that sticks [N m, per rad]. With the default, 10 N mm, a crossing
             turns by 0.1 deg before it slips at 0.02 N mm: little beside the tens of degrees of a stroke, on which
             forces hardly depend, and soft enough to be solved in few steps.
+        chamber_coefficient: friction coefficient between the mesh and a chamber inside it, a tube with a gap or
+            bellows, which may then slide along the mesh; 0 slides freely. Left out, the chamber has the axial stretch
+            of the mesh everywhere and slides nowhere.
+        chamber_stiffness: shear stress per slide of a chamber that sticks [Pa/m]; 0.1 MPa/mm where it is left out: it
+            moves by 0.3 mm before it slides at 30 kPa (0.3 of 1 bar). A wall of shear modulus G and thickness t itself
+            gives way with 3 G/t.
 
     Raises:
         SpecError: for a value out of range, or a coefficient without its arm. A muscle with a coefficient also needs
-            the diameter of its fibres.
+            the diameter of its fibres, one with a `chamber_coefficient` a chamber that may slide.
 
     >>> friction = mk.Friction(coefficient=0.3, arm="0.1 mm", constant="0.01 N mm")
     >>> muscle = mk.presets.paper().replace("friction", friction)
@@ -58,17 +70,52 @@ class Friction:
         source=_SOURCE, default=0.01,
     )  # fmt: skip
 
+    chamber_coefficient: Reads[float | None] = quantity(
+        "1", meaning="friction coefficient between chamber and mesh, none where they do not slide", low=0.0, high=10.0,
+        source=_SLIDES, default=None,
+    )  # fmt: skip
+    chamber_stiffness: Reads[float | None] = quantity(
+        "Pa/m", meaning="shear stress per slide of a chamber that sticks; 0.1 MPa/mm", low=0.0, low_open=True,
+        size=(1e3, 1e15), source=_SLIDES, default=None,
+    )  # fmt: skip
+
     def __attrs_post_init__(self) -> None:
         if self.arm is None and _some(self.coefficient):
             said = "is missing: a coefficient alone makes no moment"
             raise SpecError("friction.arm", allowed=said, advice="give the arm, such as 0.05 mm")
+        if self.chamber_stiffness is not None and self.chamber_coefficient is None:
+            said = "is missing beside chamber_stiffness: without it the chamber does not slide"
+            raise SpecError("friction.chamber_coefficient", allowed=said, advice="give it, such as 0.3")
+
+    @property
+    def grip(self) -> Number | None:
+        """Shear stress per slide of a chamber that sticks [Pa/m]; None where it is held to the mesh."""
+        if self.chamber_coefficient is None:
+            return None
+        return GRIP if self.chamber_stiffness is None else self.chamber_stiffness
 
 
-def check_friction(friction: Friction | None, diameter: Any) -> None:
-    """Raise where the fibres' diameter is needed, for the kink of the weave, and unknown."""
+def check_friction(friction: Friction | None, diameter: Any, chamber: Chamber | None) -> None:
+    """Raise where the fibres' diameter is needed, for the kink of the weave, and unknown; where the chamber should
+    slide, and cannot."""
     if friction is not None and diameter is None and _some(friction.coefficient):
         said = "needs the diameter of the fibres, which tells how they press on each other"
         raise SpecError("friction.coefficient", friction.coefficient, said, "give braid.fibre.diameter")
+    if friction is None or friction.chamber_coefficient is None:
+        return
+    advice = "leave it out, or give a chamber inside: a tube with chamber.gap = true, or bellows"
+    if chamber is None:
+        said = "needs a chamber: a bare braid has none that could slide"
+        raise SpecError("friction.chamber_coefficient", friction.chamber_coefficient, said, advice)
+    if not chamber.inside:
+        said = "needs a chamber inside the braid: the wall of this one lies around the fibres and goes with them"
+        raise SpecError("friction.chamber_coefficient", friction.chamber_coefficient, said, advice)
+    if not chamber.gap and not isinstance(chamber.law, Bellows):
+        said = (
+            "needs chamber.gap = true: a tube that is held to the mesh pulls at it where a real one would leave it, "
+            "and nothing says how it would slide there"
+        )
+        raise SpecError("friction.chamber_coefficient", friction.chamber_coefficient, said, advice)
 
 
 def _some(value: Any) -> bool:

@@ -167,7 +167,8 @@ class Muscle:
         chamber: the elastomer tube, a `Chamber`, or None for a bare braid.
         ends: what the fittings hold, one of `Ends`: "clamped" (default), "pinned" or "free".
         fittings: `Fittings` that give way or hide a dead length, or None for neither.
-        friction: `Friction` where fibres cross, or None for the paper's, which turn freely.
+        friction: `Friction` where fibres cross and of the chamber along the mesh, or None for the paper's, in which
+            crossings turn freely and the chamber goes with the mesh.
         end_radii: radius of the fibres' centre lines on the fittings [m], where it is not that of the braid: one for
             both ends, or a list of that at the first end (v = 0) and that at the last. The braid is made as a cylinder
             and pushed over the fittings, so that it is strained there without any load; its own length stays that of
@@ -214,7 +215,7 @@ class Muscle:
         for field in self.assumed:
             if field not in known:
                 raise SpecError("muscle.assumed", field, "is no field of this muscle", nearest(field, known))
-        check_friction(self.friction, self.braid.fibre.diameter)
+        check_friction(self.friction, self.braid.fibre.diameter, self.chamber)
         check_muscle(self)
         check_end_radii(self)
         check_profile(self)
