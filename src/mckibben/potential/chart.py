@@ -178,16 +178,22 @@ class Chart(Shown):
         return at
 
     def to_c(self, name: str = "muscle") -> str:
-        """One C99 file that tells the same; its functions begin with `name`: muscle_force(length, pressure), ..."""
+        """One C99 file that tells the same; its functions begin with `name`: muscle_force(length, pressure), ...
+
+        With friction at the crossings it has muscle_friction(length, pressure) too.
+        """
         from mckibben.potential.c_source import c_source
 
-        return c_source(self.table, self.told, name)
+        return c_source(self.table, self.told, name, self.rubs)
 
     def to_numpy(self) -> str:
-        """A Python module that tells the same and needs NumPy alone: force(length, pressure) and so on."""
+        """A Python module that tells the same and needs NumPy alone: force(length, pressure) and so on.
+
+        With friction at the crossings it has friction(length, pressure) and branches(length, pressure) too.
+        """
         from mckibben.potential.script import script
 
-        return script(self.table, self.told)
+        return script(self.table, self.told, self.rubs)
 
     @property
     def rubber_inside(self) -> float:
