@@ -3,6 +3,7 @@
 import sys
 from collections.abc import Iterator
 from pathlib import Path
+from types import SimpleNamespace
 from typing import Any
 
 import numpy as np
@@ -263,6 +264,30 @@ def test_a_file_is_whole_or_not_there(lift: mk.Motion, tmp_path: Path, monkeypat
     assert list(tmp_path.iterdir()) == [there]
 
 
+def test_an_mp4_gets_the_frames_with_even_sides(
+    lift: mk.Motion, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    asked: list[Any] = []
+
+    def write_frames(path: str, size: tuple[int, int], fps: float, **_: Any) -> Iterator[None]:
+        """Stands for the writer of imageio-ffmpeg, which need not be installed."""
+        asked.append((size, fps))
+        try:
+            while True:
+                frame = yield
+                assert frame.shape == (size[1], size[0], 3)
+                assert frame.dtype == np.uint8
+                asked.append(frame)
+        finally:
+            Path(path).write_bytes(b"film")
+
+    monkeypatch.setitem(sys.modules, "imageio_ffmpeg", SimpleNamespace(write_frames=write_frames))
+    assert mk.animate(lift, tmp_path / "x.mp4", fps=3, size=(601, 341)).read_bytes() == b"film"
+    (size, fps), *frames = asked
+    assert (size, fps, len(frames)) == ((600, 340), pytest.approx(3.0), 4)  # at 0, 1/3, 2/3 and 1 s
+    assert (frames[0] != frames[-1]).any()
+
+
 def test_an_mp4(lift: mk.Motion, tmp_path: Path) -> None:
     pytest.importorskip("imageio_ffmpeg")
     assert b"ftyp" in mk.animate(lift, tmp_path / "x.mp4", fps=5, size=SIZE).read_bytes()[:16]
@@ -276,4 +301,6 @@ def test_the_command_draws_a_saved_motion(lift: mk.Motion, tmp_path: Path) -> No
         assert (film.n_frames, film.size) == (3, SIZE)
     refused(invoke("view", saved, "-o", tmp_path / "x.png"), "holds a motion", "mckibben plot")
     refused(invoke("view", saved), "holds a motion")
+    still = mk.save(mk.solve(M, length="115 mm", pressure="1 bar"), tmp_path / "state.nc")
+    refused(invoke("view", still, "-o", tmp_path / "x.stl", "--speed", "2"), "animation of a motion")
     refused(invoke("view", saved, "-o", tmp_path / "y.gif", "--ghost"), "has no meaning for a motion")

@@ -78,6 +78,8 @@ def view(
         "colour": colour, "cut": cut, "translucent": translucent, "ghost": ghost, "axis": axis, "tilt": tilt,
         "turn": turn, "zoom": zoom, "size": _pixels(size),
     }  # fmt: skip
+    if speed is not None and ending not in moving.ENDINGS:
+        raise _error("--speed", "is that of an animation of a motion", "such as -o lift.gif")
     if output is None or ending is None:
         if not render.has_display():
             raise _error("--output", "is missing: there is no display for a window", "such as -o picture.png")
@@ -100,7 +102,7 @@ def view(
 
 
 def _in_motion(found: Any, file: Path, moves: bool) -> bool:
-    """Whether a file holds a motion, of which there are moving pictures alone; SpecError unless it or a result."""
+    """Whether a file holds a motion, of which there are animations alone; SpecError for what else is no result."""
     from mckibben.files import store
     from mckibben.results.motion import Motion
 
