@@ -5,6 +5,7 @@ A folder made by that command may be given instead of making the pictures anew.
 """
 
 import runpy
+import shutil
 import sys
 import tempfile
 from pathlib import Path
@@ -40,6 +41,12 @@ def working_range() -> None:
     made = Path("out") / "working_range.png"
     runpy.run_path(str(HERE.parent.parent / "examples" / "working_range.py"), run_name="__main__")
     shrink(made, HERE / made.name)
+
+
+def lift() -> None:
+    """The moving picture that examples/lift_by_pwm.py makes."""
+    runpy.run_path(str(HERE.parent.parent / "examples" / "lift_by_pwm.py"), run_name="__main__")
+    shutil.copyfile(Path("out") / "lift_by_pwm.gif", HERE / "lift.gif")
 
 
 def scene() -> None:
@@ -114,6 +121,7 @@ def main(folder: Path) -> None:
 
 if __name__ == "__main__":
     working_range()
+    lift()
     scene()
     datasheet()
     spread()

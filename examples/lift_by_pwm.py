@@ -1,6 +1,6 @@
 """A weight lifted by pulses: a valve that fills or vents twenty times a second, its duty raised from 30 to 50 %.
 
-The same from a file: mckibben simulate examples/rig.toml. Writes out/lift_by_pwm.png.
+The same from a file: mckibben simulate examples/rig.toml. Writes out/lift_by_pwm.png and out/lift_by_pwm.gif.
 """
 
 from pathlib import Path
@@ -31,3 +31,4 @@ print(f"air of one pulse: {1e3 * cycle.air:.2f} mL (normal); {motion.consumed:.3
 Path("out").mkdir(exist_ok=True)
 mk.plot(motion).savefig("out/lift_by_pwm.png", dpi=200)
 print("out/lift_by_pwm.png")
+print(mk.animate(motion, "out/lift_by_pwm.gif", fps=10, force=True))  # mk.animate(..., speed=0.1) shows every pulse

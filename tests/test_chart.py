@@ -71,6 +71,40 @@ def test_the_states_by_which_the_error_was_measured_are_kept_and_give_it_again(c
     assert np.abs(off).max() == pytest.approx(chart.force_error, rel=1e-9)
 
 
+def by_differences(h: np.ndarray, P: np.ndarray) -> np.ndarray:
+    """dF/dh by central differences of solved states, with Richardson's step."""
+    steps = 5e-5 * np.array([-2.0, -1.0, 1.0, 2.0])
+    forces = [[mk.solve(mk.presets.paper(), length=x + d, pressure=y, tolerance=1e-9).force for d in steps.tolist()]
+              for x, y in zip(h.tolist(), P.tolist(), strict=True)]  # fmt: skip
+    far, near, ahead, further = np.array(forces).T
+    return np.asarray((8.0 * (ahead - near) - (further - far)) / (12.0 * steps[2]))
+
+
+def test_the_stated_error_of_the_stiffness_holds_elsewhere(chart: mk.Chart) -> None:
+    h, P = np.random.default_rng(3).uniform([0.0605, 0.02e5], [0.1145, 2.98e5], (8, 2)).T
+    off = np.abs(chart.stiffness(h, P) - by_differences(h, P))
+    assert off.max() < 2.0 * chart.stiffness_error
+    data, largest = chart.data, float(chart.data.attrs["largest_stiffness"])
+    assert chart.stiffness_error < 1e-3 * largest
+    h, P, own = (data[f"check_{name}"].values for name in ("length", "pressure", "stiffness"))
+    assert np.abs(own).max() == largest
+    assert np.abs(chart.stiffness(h, P) - own).max() == pytest.approx(chart.stiffness_error, rel=1e-9)
+    some = np.flatnonzero((h > 0.0605) & (h < 0.1145))[::37]
+    np.testing.assert_allclose(own[some], by_differences(h[some], P[some]), rtol=0.0, atol=2e-5 * largest)
+    assert "stiffness" in chart.summary.index
+    assert any("stiffness" in line for line in chart.told)
+
+
+def test_a_map_from_before_the_stiffness_was_measured_loads(chart: mk.Chart, tmp_path: Path) -> None:
+    data = chart.data.drop_vars("check_stiffness")
+    data.attrs = {name: value for name, value in chart.data.attrs.items() if "stiff" not in name}
+    old = mk.load(mk.save(mk.Chart(chart.muscle, data), tmp_path / "old.nc"))
+    assert np.isnan(old.stiffness_error)
+    assert "stiffness" not in old.summary.index
+    assert old.force("100 mm", "1 bar") == chart.force("100 mm", "1 bar")
+    assert not any("nan" in line for line in old.told)
+
+
 def slopes(at: Any, name: str, h: np.ndarray, P: np.ndarray, dh: float, dP: float) -> np.ndarray:
     ahead, behind = (getattr(at(h + sign * dh, P + sign * dP), name) for sign in (1.0, -1.0))
     return np.asarray((ahead - behind) / (2.0 * max(dh, dP)))

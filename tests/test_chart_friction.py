@@ -1,7 +1,12 @@
 """Friction in maps and in motion: sliding branches against paths, the rule between them against closed forms."""
 
+import ctypes
 import itertools
 import math
+import runpy
+import shutil
+import subprocess
+import zipfile
 from pathlib import Path
 from typing import Any
 
@@ -123,6 +128,63 @@ def test_files_and_tables_have_the_friction(chart: mk.Chart, tmp_path: Path) -> 
     broken = attrs.evolve(chart, data=chart.data.drop_vars("sticking"))
     with pytest.raises(mk.SpecError, match="holds no sticking of a chart"):
         mk.load(mk.save(broken, tmp_path / "broken.nc"))
+
+
+def around(chart: mk.Chart) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Lengths and pressures within and around the range, and the friction there."""
+    h, P = np.random.default_rng(7).uniform([0.05, -0.3e5], [0.14, 2.5e5], (400, 2)).T
+    return h, P, chart.friction(h, P)
+
+
+@pytest.mark.skipif(shutil.which("gcc") is None, reason="there is no gcc to compile with")
+def test_c_tells_the_friction(chart: mk.Chart, tmp_path: Path) -> None:
+    (tmp_path / "all.c").write_text("""
+#include "arm.h"
+void all(int n, const double *h, const double *P, double *out) {
+    for (int i = 0; i < n; i++) out[i] = arm_friction(h[i], P[i]);
+}
+""")
+    mk.export(chart, tmp_path / "arm.h", name="arm")
+    flags = "-std=c99 -Wall -Wextra -Werror -pedantic -O1 -ffp-contract=off -shared -fPIC all.c -o all.so -lm"
+    subprocess.run(["gcc", *flags.split()], cwd=tmp_path, check=True)
+    h, P, expected = around(chart)
+    h, P, out = np.append(h, np.nan), np.append(P, 1e5), np.zeros(len(h) + 1)
+    ctypes.CDLL(str(tmp_path / "all.so")).all(len(h), *(ctypes.c_void_p(one.ctypes.data) for one in (h, P, out)))
+    assert_allclose(out[:-1], expected, rtol=1e-12)
+    assert np.isnan(out[-1])
+    assert expected.min() > 0.1
+    assert "friction" not in mk.chart(mk.presets.paper(), **RANGE).to_c()
+
+
+def test_the_module_for_numpy_alone_tells_the_branches(chart: mk.Chart, tmp_path: Path) -> None:
+    module = runpy.run_path(str(mk.export(chart, tmp_path / "muscle_map.py")))
+    h, P, expected = around(chart)
+    assert_array_equal(module["friction"](h, P), expected)
+    assert_array_equal(module["branches"](h, P), chart.branches(h, P))
+    assert "FRICTION" not in mk.chart(mk.presets.paper(), **RANGE).to_numpy()
+
+
+@pytest.mark.skipif(shutil.which("gcc") is None, reason="there is no gcc to compile with")
+@pytest.mark.parametrize("fmi", [2, 3])
+def test_an_fmu_of_the_muscle_tells_the_friction(chart: mk.Chart, fmi: int, tmp_path: Path) -> None:
+    fmpy = pytest.importorskip("fmpy")
+    from test_export import Running
+
+    path = mk.export(chart, tmp_path / "muscle.fmu", fmi=fmi)
+    assert fmpy.validation.validate_fmu(str(path)) == []
+    one = Running(path)
+    try:
+        for h, P, expected in np.array(around(chart)).T[:40].tolist():
+            one.set(length=h, pressure=P)
+            one.step(1e-3)
+            assert one.get("friction") == pytest.approx(expected, rel=1e-12)
+    finally:
+        one.stop()
+    lift = mk.export(chart, tmp_path / "lift.fmu", name="lift", mass="2 kg", fmi=fmi)
+    told = fmpy.read_model_description(str(lift))
+    assert "friction" not in [variable.name for variable in told.modelVariables]
+    with zipfile.ZipFile(lift) as archive:
+        assert "without friction" in archive.read("documentation/index.html").decode()
 
 
 def test_too_much_friction_is_refused() -> None:

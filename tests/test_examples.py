@@ -202,7 +202,7 @@ def test_chart_controller(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsy
 
 
 def test_lift_by_pwm(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]) -> None:
-    low, high, left, air, _ = printed("lift_by_pwm.py", tmp_path, monkeypatch, capsys)
+    low, high, left, air, *_ = printed("lift_by_pwm.py", tmp_path, monkeypatch, capsys)
     assert low == pytest.approx([30.0, 109.82, 0.354, 0.046], abs=0.011)
     assert high == pytest.approx([50.0, 96.76, 0.808, 0.097], abs=0.011)
     assert left[0] == pytest.approx(1.170, abs=2e-3)

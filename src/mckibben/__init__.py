@@ -61,7 +61,7 @@ _PUBLIC = {
     "mckibben.view.plot": ("plot",),
     "mckibben.view.interactive": ("interactive",),
     "mckibben.view.scene": ("scene",),
-    "mckibben.view.animate": ("animate",),
+    "mckibben.film.animate": ("animate",),
     "mckibben.view.shapefile": ("save_shape",),
     "mckibben.scatter.tolerances": ("tolerances",),
     "mckibben.results.tolerances": ("Tolerances",),

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -44,7 +45,8 @@ def as_json(chart: Chart) -> dict[str, Any]:
     """Range, errors and notes for JSON, in SI units."""
     about = chart.data.attrs
     low, high = chart.lengths(chart.pressures)
-    errors = {name: float(about[f"{name}_error"]) for name in ("force", "volume", "radius")}
+    stiff = () if math.isnan(chart.stiffness_error) else ("stiffness",)
+    errors = {name: float(about[f"{name}_error"]) for name in ("force", "volume", "radius", *stiff)}
     return {
         "converged": chart.converged, "pressure": list(chart.pressures),
         "length": [float(low.min()), float(high.max())], "errors": errors,

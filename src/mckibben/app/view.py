@@ -1,4 +1,4 @@
-"""`mckibben view`: a saved result in three dimensions, as a window, a picture, an animation or a shape."""
+"""`mckibben view`: a saved result in three dimensions (window, picture, animation, shape), or a motion as animation."""
 
 from __future__ import annotations
 
@@ -17,12 +17,13 @@ EPILOG = examples(
     "mckibben view out.nc -o picture.png --state 0 --colour density_fibres --size 1600x900",
     "mckibben view out.nc -o filling.gif",
     "mckibben view out.nc -o outside.stl",
+    "mckibben view motion.nc -o lift.gif --speed 0.2",
 )
 
 
 @command
 def view(
-    file: Annotated[Path, typer.Argument(metavar="FILE.nc", help="a result saved by mckibben run -o FILE.nc")],
+    file: Annotated[Path, typer.Argument(metavar="FILE.nc", help="what mckibben run or simulate saved by -o FILE.nc")],
     output: Annotated[
         Path | None,
         typer.Option(
@@ -49,27 +50,36 @@ def view(
     size: Annotated[
         str | None, typer.Option(metavar="WIDTHxHEIGHT", help=r"pixels \[default: 1200x600; standing 700x1000]")
     ] = None,
-    fps: Annotated[float, typer.Option(help="frames a second of an animation")] = 5.0,
+    fps: Annotated[
+        float | None, typer.Option(help=r"frames a second of an animation \[default: 5, of a motion 20]")
+    ] = None,
+    speed: Annotated[
+        float | None, typer.Option(help=r"how fast a motion is shown, 0.1 ten times slower \[default: 1, real time]")
+    ] = None,
     force: Annotated[bool, typer.Option("--force", help="replace the file if it exists")] = False,
 ) -> None:
-    """Show a saved result in three dimensions, without solving anything again.
+    """Show a saved result in three dimensions, without solving anything again; or a saved motion, as a .gif or .mp4.
 
     It takes PyVista, pip install "mckibben\\[view]"; .glb and .stl do not. Without a display, pictures and animations
     also take EGL or OSMesa (Debian: libegl1 and libgl1-mesa-dri, or libosmesa6), and an .mp4 takes imageio-ffmpeg.
     """
     from mckibben import disk
     from mckibben.files import store
-    from mckibben.view import animate, appearance, render, scene, shapefile, stage
+    from mckibben.film import animate
+    from mckibben.view import appearance, moving, render, scene, shapefile, stage
 
-    kinds = {".png": "a picture"} | animate.ENDINGS | shapefile.ENDINGS
+    kinds = {".png": "a picture"} | moving.ENDINGS | shapefile.ENDINGS
     ending = None if output is None else store.suffix_of(output, kinds)
     if output is not None:
         disk.check_target(output, force)
-    result = store.load_result(file)
+    result: Any = store.load(file)
+    in_motion = _in_motion(result, file, ending in moving.ENDINGS)
     drawing: dict[str, Any] = {
         "colour": colour, "cut": cut, "translucent": translucent, "ghost": ghost, "axis": axis, "tilt": tilt,
         "turn": turn, "zoom": zoom, "size": _pixels(size),
     }  # fmt: skip
+    if speed is not None and ending not in moving.ENDINGS:
+        raise _error("--speed", "is that of an animation of a motion", "such as -o lift.gif")
     if output is None or ending is None:
         if not render.has_display():
             raise _error("--output", "is missing: there is no display for a window", "such as -o picture.png")
@@ -77,18 +87,31 @@ def view(
     elif ending in shapefile.ENDINGS:
         shapefile.save_shape(result, output, state, colour=colour, force=force)
         say(f"written: {output}, in {shapefile.UNITS[ending]}")
-    elif ending in animate.ENDINGS:
+    elif ending in moving.ENDINGS:
         if state is not None:
             raise _error("--state", f"has no meaning for {output}", "an animation shows all states")
-        animate.animate(result, output, fps=fps, force=force, **drawing)
+        animate.animate(result, output, fps=fps, speed=speed, force=force, **drawing)
         say(f"drawn: {output}")
-        if appearance.left_out(result):
+        if not in_motion and appearance.left_out(result):
             say(appearance.left_out(result))
     else:
         plotter = scene.scene(result, state, off_screen=True, **drawing)
         disk.write(output, stage.png(plotter), force)
         plotter.close()
         say(f"drawn: {output}")
+
+
+def _in_motion(found: Any, file: Path, moves: bool) -> bool:
+    """Whether a file holds a motion, of which there are animations alone; SpecError for what else is no result."""
+    from mckibben.files import store
+    from mckibben.results.motion import Motion
+
+    if not isinstance(found, Motion):
+        store.result_in(found, file)
+        return False
+    if not moves:
+        raise _error(str(file), "holds a motion", "such as -o lift.gif; mckibben plot draws it over time")
+    return True
 
 
 def _pixels(size: str | None) -> tuple[int, int] | None:

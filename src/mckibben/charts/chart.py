@@ -53,8 +53,9 @@ def chart(
     States are solved in batches over the range. One potential W, a polynomial in length and in the root of the
     pressure, is fitted to their forces, volumes and energies, so that force, volume and stiffness are its exact slopes.
     It gets more terms, and states, until it misses none of the states that it was not made of by more than the
-    tolerance; the largest error there is `chart.error`. Lengths at which the muscle is not stable and admissible are
-    left out of the range, with a note.
+    tolerance; the largest error there is `chart.error`. At these states the stiffness, of which the map is not made, is
+    compared with that of the equations (`chart.stiffness_error`). Lengths at which the muscle is not stable and
+    admissible are left out of the range, with a note.
 
     Of a muscle with friction the map is that without, and beside it half of what lies between its sliding branches
     (`Chart.friction`, `Chart.branches`) and how stiff crossings are that stick: which of the forces between them there
@@ -181,7 +182,7 @@ class _Making:
             self.watch(self.done, self.total)
 
         solver = max(1e-10, min(1e-6, SURER * self.tolerance))
-        return sample(self.muscle, lengths, P, solver, singly, tell)
+        return sample(self.muscle, lengths, P, solver, singly, tell, stiff=paths)
 
     def fitted(self, edges: Edges, most: tuple[int, int]) -> Table:
         """The map through the states so far."""
@@ -217,6 +218,17 @@ def _errors(table: Table, seen: Samples, scales: Scales) -> tuple[float, float, 
     return tuple(float(one) for one in [*off, np.nan][:3])  # type: ignore[return-value]
 
 
+def _stiffness(table: Table, seen: Samples) -> tuple[float, float]:
+    """The largest error [N/m] of the stiffness where the solver's is known, and the largest one; NaN where none is."""
+    there = np.isfinite(seen.numbers["stiffness"])
+    if not there.any():
+        return np.nan, np.nan
+    known = seen.take(np.flatnonzero(there))
+    own = known.numbers["stiffness"]
+    found = evaluate(unbounded(table), known.length, known.pressure).stiffness
+    return float(np.abs(found - own).max()), float(np.abs(own).max())
+
+
 def _answer(muscle: Muscle, table: Table, making: _Making, asked: Edges, edges: Edges, tolerance: float) -> Chart:
     """The map as a value."""
     import xarray as xr
@@ -225,6 +237,7 @@ def _answer(muscle: Muscle, table: Table, making: _Making, asked: Edges, edges: 
     inside = _within(edges, making.states)
     scales = scales_of(inside + checks)
     force, volume, radius = _errors(table, checks, scales)
+    stiffness, stiffest = _stiffness(table, checks)
     converged = max(force, volume) <= tolerance
     notes = []
     if not converged:
@@ -236,6 +249,11 @@ def _answer(muscle: Muscle, table: Table, making: _Making, asked: Edges, edges: 
     if float(edges.high.min()) < float(asked.high[0]):
         said = f"lengths beyond {show(float(edges.high.min()), 'm', 4)} are left out"
         notes.append(f"{said}: no stable state was found there")
+    known = int(np.isfinite(checks.numbers["stiffness"]).sum())
+    if known < len(checks.length):
+        notes.append(
+            f"the error of the stiffness is that at {known} of the {len(checks.length)} states; elsewhere unknown"
+        )
     if muscle.assumed:
         notes.append(f"assumed, not measured: {', '.join(muscle.assumed)}")
     p = parameters(muscle)
@@ -243,14 +261,16 @@ def _answer(muscle: Muscle, table: Table, making: _Making, asked: Edges, edges: 
         "muscle": to_toml(muscle, allow_custom=True), "assumed": ", ".join(muscle.assumed), "notes": "\n".join(notes),
         "mckibben_version": versions()["mckibben"], "tolerance": float(tolerance), "converged": int(converged),
         "force_error": force * scales.force, "volume_error": volume * scales.volume,
-        "radius_error": radius * scales.radius, "largest_force": scales.force, "largest_volume": scales.volume,
+        "radius_error": radius * scales.radius, "stiffness_error": stiffness, "largest_stiffness": stiffest,
+        "largest_force": scales.force, "largest_volume": scales.volume,
         "largest_radius": scales.radius, "states": int(making.states.good.sum()),
         "asked_shortest": float(asked.low[0]), "asked_longest": float(asked.high[0]),
         "rubber_inside": 0.0 if p.tube is None else float(p.tube.rubber),
     }  # fmt: skip
     seen = {f"check_{name}": ("check", values, {"units": unit}) for name, values, unit in (
         ("length", checks.length, "m"), ("pressure", checks.pressure, "Pa"), ("force", checks.numbers["force"], "N"),
-        ("volume", checks.numbers["volume"], "m^3"), ("radius", checks.numbers["largest_radius"], "m"))}  # fmt: skip
+        ("volume", checks.numbers["volume"], "m^3"), ("radius", checks.numbers["largest_radius"], "m"),
+        ("stiffness", checks.numbers["stiffness"], "N/m"))}  # fmt: skip
     variables = variables_of(table)
     number = variables.pop("number")
     return Chart(muscle, xr.Dataset(variables | seen, {"number": number}, about))

@@ -18,12 +18,12 @@ from mckibben.spec import Isobaric, Muscle
 from mckibben.spec.plausible import trusted
 from mckibben.sweeps.batches import Solved, solve_together
 from mckibben.sweeps.groups import grouped
+from mckibben.sweeps.stiffness import stiffness_of
 
 __all__ = ["KEPT", "Samples", "sample"]
 
-KEPT = ("force", "volume", "energy", "largest_radius")
-"""What is read off every state."""
-
+KEPT = ("force", "volume", "energy", "largest_radius", "stiffness")
+"""What is read off states; the stiffness of those alone for which it is asked."""
 
 LOST = 0.2
 """Share of paths that may be left out."""
@@ -67,9 +67,11 @@ def sample(
     tolerance: float,
     singly: bool = True,
     watch: Callable[[int], None] = lambda done: None,
+    stiff: int | None = None,
 ) -> Samples:
     """States at `lengths` (paths, n), the longest of each path first, and at its pressure.
 
+    From path `stiff` on they have their stiffness too, where batches find them; elsewhere it is NaN.
     Paths that a batch does not follow are sought state by state, and left out (NaN for their lengths) where they are
     few; without `singly` they are left without states.
     """
@@ -87,8 +89,9 @@ def sample(
             fine = np.array([_stable(solved, d) for d in range(len(solved.group))])
             rows = solved.group.index
             good[rows], left[rows] = fine, False
+            numbers = solved.numbers | {"stiffness": _stiffness(solved, count if stiff is None else stiff)}
             for name in KEPT:
-                found[name][rows] = np.where(fine, solved.numbers[name], np.nan)
+                found[name][rows] = np.where(fine, numbers[name], np.nan)
     watch(int((~left).sum()))
     if singly and left.sum() <= LOST * count:
         lengths = np.where(left[:, None], np.nan, lengths)
@@ -103,6 +106,15 @@ def sample(
         left[k] = False
         watch(int((~left).sum()))
     return Samples(lengths, np.broadcast_to(pressures[:, None], lengths.shape), found, good)
+
+
+def _stiffness(solved: Solved, first: int) -> np.ndarray:
+    """dF/dh [N/m] at the states of the paths from one on (paths, n); NaN at those before."""
+    found = np.full(solved.plain.shape, np.nan)
+    some = np.flatnonzero(solved.group.index >= first)
+    if len(some):
+        found[some] = stiffness_of(solved, some)
+    return found
 
 
 def _stable(solved: Solved, d: int) -> np.ndarray:

@@ -50,14 +50,16 @@ def sources(chart: Chart, name: str, mass: float | None = None, fmi: int = 2) ->
     check_name(name, "export.name")
     first, last = (float(end) for end in chart.pressures)
     middle = 0.5 * sum(float(end) for end in chart.lengths(first))
-    variables = muscle_variables(middle, first) if mass is None else rig_variables(mass, (first, last))
+    rubs = mass is None and chart.rubs is not None
+    variables = muscle_variables(middle, first, rubs) if mass is None else rig_variables(mass, (first, last))
     meaning = f"{'a muscle' if mass is None else 'a muscle with a mass and a valve'}: {chart.told[1]}; {chart.told[2]}"
     body = "fmu_muscle.c" if mass is None else "fmu_rig.c"
     inside = files("mckibben.exports")
+    defined = ("#define RUBS\n" if rubs else "") + f"#define RUBBER {chart.rubber_inside!r}"
     written = {
         **{file: (inside / file).read_text(encoding="utf-8") for file in (MAIN[fmi], "fmu.h")},
         "muscle.h": chart.to_c(),
-        "model.h": f'#include "muscle.h"\n\n#define RUBBER {chart.rubber_inside!r}\n{in_c(variables)}\n'
+        "model.h": f'#include "muscle.h"\n\n{defined}\n{in_c(variables)}\n'
         + (inside / body).read_text(encoding="utf-8"),
     }
     version = str(chart.data.attrs["mckibben_version"])

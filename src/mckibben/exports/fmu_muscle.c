@@ -21,4 +21,7 @@ static void model_see(Instance *it) {
     x[volume_by_pressure] = at.volume_by_pressure;
     x[largest_radius] = muscle_largest_radius(x[length], x[pressure]);
     x[inside] = at.inside;
+#ifdef RUBS /* there is friction at the crossings */
+    x[friction] = muscle_friction(x[length], x[pressure]);
+#endif
 }

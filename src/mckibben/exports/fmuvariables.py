@@ -33,8 +33,11 @@ INSIDE = Variable(
 STIFFNESS = _output("stiffness", "N/m", "slope of the force by the length at constant pressure")
 
 
-def muscle_variables(length: float, pressure: float) -> tuple[Variable, ...]:
-    """Pressure and length in, force and more out."""
+def muscle_variables(length: float, pressure: float, rubs: bool = False) -> tuple[Variable, ...]:
+    """Pressure and length in, force and more out; where crossings rub, that too."""
+    branches = (
+        "of crossings that all slip: the muscle pulls with force less friction as it shortens, plus as it lengthens"
+    )
     slack = "whether the muscle hangs on a tendon, which does not push: no force below zero"
     return (
         Variable("pressure", "input", "Pa", "gauge pressure", pressure),
@@ -47,6 +50,7 @@ def muscle_variables(length: float, pressure: float) -> tuple[Variable, ...]:
         _output("volume_by_pressure", "m3/Pa", "slope of the volume by the pressure at constant length"),
         _output("largest_radius", "m", "largest radius along the muscle"),
         INSIDE,
+        *((_output("friction", "N", branches),) if rubs else ()),
     )
 
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import io
 import json
+import math
 
 import numpy as np
 
@@ -37,6 +38,7 @@ def as_json(chart: Chart, lengths: int, pressures: int) -> str:
     held = {
         "length": found.length.tolist(), "pressure": found.pressure.tolist(), **tables,
         "errors": {"force": chart.force_error, "volume": chart.volume_error, "largest_radius": chart.radius_error,
+                   **({} if math.isnan(chart.stiffness_error) else {"stiffness": chart.stiffness_error}),
                    "force_between_breakpoints": found.error},
         "units": found.units, "notes": list(chart.told), "mckibben_version": str(about["mckibben_version"]),
     }  # fmt: skip

@@ -31,6 +31,9 @@ _ABOUT = {
     **{f"largest_{name}": float for name in ("force", "volume", "radius")},
 }  # fmt: skip
 """Attributes that a file must have."""
+_STIFF: dict[str, tuple[tuple[str, ...], str]] = {"check_stiffness": (("check",), "f")}
+_ABOUT_STIFF = {"stiffness_error": float, "largest_stiffness": float}
+"""What maps have since the error of their stiffness is measured."""
 _RUBS: dict[str, tuple[tuple[str, ...], str]] = {
     "friction": (("i_friction", "j_friction"), "f"), "sticking": (("i_friction", "j_friction"), "f"),
     **{f"check_branch_{name}": (("check_branch",), "f")
@@ -47,10 +50,13 @@ def save(chart: Chart, path: str | PathLike[str], force: bool = False) -> Path:
 
 def of(stored: xr.Dataset, name: str) -> Chart:
     """The map that a file of this name holds; SpecError where it holds something else."""
-    data = checked(stored, name, "chart", _NEEDED, _ABOUT, ("number",))
+    needed, about = _NEEDED, _ABOUT
+    if "stiffness_error" in stored.attrs:
+        needed, about = needed | _STIFF, about | _ABOUT_STIFF
+    data = checked(stored, name, "chart", needed, about, ("number",))
     muscle = muscle_in(name, data.attrs["muscle"])
     if muscle.friction is not None:
-        data = checked(stored, name, "chart", _NEEDED | _RUBS, _ABOUT | _ABOUT_RUBS, ("number",))
+        data = checked(stored, name, "chart", needed | _RUBS, about | _ABOUT_RUBS, ("number",))
     return Chart(muscle, data)
 
 

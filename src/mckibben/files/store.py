@@ -136,7 +136,11 @@ def load(path: str | PathLike[str]) -> Result | Fitted | Designed | Chart | Moti
 
 def load_result(path: str | PathLike[str]) -> Result:
     """The result in an `.nc` file. SpecError for any file that is not a whole result."""
-    found = load(path)
+    return result_in(load(path), path)
+
+
+def result_in(found: Any, path: str | PathLike[str]) -> Result:
+    """What a file holds, where that is a result; SpecError, which names the file, where it is something else."""
     from mckibben.results.result import Result
 
     if not isinstance(found, Result):

@@ -17,7 +17,7 @@ from mckibben.solver.batch import moved, newton
 from mckibben.solver.problem import Basis
 from mckibben.solver.system import Local, Unknowns, assemble, localise, residual
 
-__all__ = ["Appraised", "Polished", "appraised", "polished"]
+__all__ = ["Appraised", "Polished", "appraised", "polished", "stiffnesses"]
 
 
 class Appraised(NamedTuple):
@@ -99,3 +99,18 @@ def polished(
         return Polished(states, rows.change.at[k].set(change))
 
     return jax.lax.fori_loop(0, count, at, Polished(states, change))
+
+
+@kernel
+def stiffnesses(basis: Basis, on: Placed, states: Unknowns, which: Int[Array, " l"]) -> Float[Array, " batch"]:
+    """dF/dh [N/m] at one state (batch, ...) of every muscle; the first row that holds is the length, the next another.
+
+    It is the change of the force by the target of the length, which a Newton step has anyway (implicit function
+    theorem).
+    """
+
+    def one(on: Placed, state: Unknowns) -> Array:
+        by = newton(basis, on, which, state, jnp.zeros(len(state.loads))).tangents.loads
+        return by[0, 0] * on.unit[0] / on.unit[1] ** 2
+
+    return jax.vmap(one)(on, states)

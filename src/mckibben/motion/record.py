@@ -15,7 +15,7 @@ from mckibben.motion.flow import GAMMA, NORMAL
 from mckibben.motion.mapped import Mapped
 from mckibben.motion.plant import Plant
 from mckibben.motion.regime import FIRST, PER, Seen
-from mckibben.results.motion import OF_MUSCLES, OF_RIG, TURNING, Motion
+from mckibben.results.motion import HANGING, OF_MUSCLES, OF_RIG, TURNING, Motion
 from mckibben.spec.loads import FixedEnd, Load
 from mckibben.spec.rigtext import rig_to_toml
 from mckibben.units import show
@@ -49,7 +49,7 @@ def recorded(plant: Plant, done: Driven, method: str, tolerance: float) -> Motio
         values = seen[name].astype(bool)
         variables[name] = (dims, values if several else values[:, 0], {"long_name": meaning})
     for name, values in _of_rig(plant, y, muscles).items():
-        unit, meaning = (OF_RIG | TURNING)[name]
+        unit, meaning = (OF_RIG | TURNING | HANGING)[name]
         variables[name] = (("time",), values, {"units": unit, "long_name": meaning})
     variables["moves"] = (
         ("time",),
@@ -90,6 +90,8 @@ def _of_rig(plant: Plant, y: np.ndarray, muscles: dict[str, np.ndarray]) -> dict
         return np.asarray((values - values[0]).sum(axis=1))
 
     found = {} if not plant.rig.turns else {"angle": x.copy(), "angular_speed": v.copy()}
+    if plant.slackens and not plant.rig.turns:
+        found["position"] = x.copy()
     found["kinetic"] = 0.5 * plant.mass * v**2
     found["potential"] = -plant.weight * (x - x[0]) + 0.5 * plant.spring * (
         (x - plant.rest) ** 2 - (x[0] - plant.rest) ** 2

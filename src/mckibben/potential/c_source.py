@@ -8,6 +8,7 @@ from collections.abc import Iterable
 import numpy as np
 
 from mckibben.potential.evaluate import Table
+from mckibben.potential.rubbing import LEAST, Rubs
 from mckibben.spec.errors import SpecError
 
 __all__ = ["c_source", "check_name"]
@@ -22,7 +23,7 @@ _TEMPLATE = r"""/*
    double @NAME@_volume_by_length(length, pressure)   m^2, dV/dh, which is -dF/dP
    double @NAME@_volume_by_pressure(length, pressure) m^3/Pa, dV/dP at constant length
    double @NAME@_largest_radius(length, pressure)     m
-   int    @NAME@_inside(length, pressure)             whether the error above holds there
+@SAYS@   int    @NAME@_inside(length, pressure)             whether the error above holds there
    void   @NAME@_evaluate(length, pressure, &values)  all but the radius at once
    void   @NAME@_lengths(pressure, &shortest, &longest)
 
@@ -188,17 +189,38 @@ static inline double @NAME@_largest_radius(double length, double pressure) {
     const double r = @NAME@_sum(&@NAME@_radius[0][0], @NR@, @MR@, X, Y);
     return r < @LEAST@ ? @LEAST@ : r;
 }
-
+@RUBS@
 #endif
 """
+_SAYS = """   double @NAME@_friction(length, pressure)           N, of crossings that all slip: it pulls with
+                                                      force - friction as it shortens, + as it lengthens
+"""
+_RUBS = """
+static inline double @NAME@_friction(double length, double pressure) {
+    if (!(fabs(length) < 1e300 && fabs(pressure) < 1e300)) return length - length + pressure - pressure;
+    double shortest, longest, X[@NF@], Y[@MF@];
+    @NAME@_lengths(pressure, &shortest, &longest);
+    const double P = @NAME@_clip(pressure, @FIRST@, @LAST@), h = @NAME@_clip(length, shortest, longest);
+    @NAME@_polynomials((h - @H0@) / @H1@, @NF@, X);
+    @NAME@_polynomials((sqrt(P - @FIRST@ + @SOFT@) - @Q0@) / @Q1@, @MF@, Y);
+    const double f = @NAME@_sum(&@NAME@_rubs[0][0], @NF@, @MF@, X, Y);
+    return f < @NONE@ ? @NONE@ : f;
+}
+"""
+"""What is added for a muscle with friction at its crossings."""
 
 
-def c_source(table: Table, notes: Iterable[str], name: str) -> str:
-    """The file's text; SpecError for a name that C does not take."""
+def c_source(table: Table, notes: Iterable[str], name: str, rubs: Rubs | None = None) -> str:
+    """The file's text, of a muscle with friction (`rubs`) with that too; SpecError for a name that C does not take."""
     check_name(name, "to_c.name")
     _, n, m = table.series.shape
     arrays = {"series": table.series, "radius": table.radius, "low": table.low, "high": table.high,
               "springs": table.springs}  # fmt: skip
+    template, sizes = _TEMPLATE.replace("@SAYS@", "").replace("@RUBS@", ""), {}
+    if rubs is not None:
+        template = _TEMPLATE.replace("@SAYS@", _SAYS).replace("@RUBS@", _RUBS)
+        arrays["rubs"] = rubs.friction
+        sizes = dict(zip(("NF", "MF"), map(str, rubs.friction.shape), strict=True)) | {"NONE": f"({LEAST!r})"}
     tables = "".join(_array(f"{name}_{what}", np.asarray(array, float)) for what, array in arrays.items())
     said = "\n".join(f"   {line}".rstrip() for line in notes).replace("*/", "* /")
     numbers = {
@@ -208,9 +230,9 @@ def c_source(table: Table, notes: Iterable[str], name: str) -> str:
     words = {key: f"({float(value)!r})" for key, value in numbers.items()} | {
         "NAME": name, "GUARD": name.upper(), "N": str(n), "M": str(m), "NR": str(table.radius.shape[0]),
         "MR": str(table.radius.shape[1]), "KL": str(len(table.low)), "KH": str(len(table.high)), "TABLES": tables,
-        "NOTES": said,
+        "NOTES": said, **sizes,
     }  # fmt: skip
-    return re.sub(r"@([A-Z0-9]+)@", lambda found: words[found[1]], _TEMPLATE)
+    return re.sub(r"@([A-Z0-9]+)@", lambda found: words[found[1]], template)
 
 
 def check_name(name: str, field: str) -> None:

@@ -178,16 +178,22 @@ class Chart(Shown):
         return at
 
     def to_c(self, name: str = "muscle") -> str:
-        """One C99 file that tells the same; its functions begin with `name`: muscle_force(length, pressure), ..."""
+        """One C99 file that tells the same; its functions begin with `name`: muscle_force(length, pressure), ...
+
+        With friction at the crossings it has muscle_friction(length, pressure) too.
+        """
         from mckibben.potential.c_source import c_source
 
-        return c_source(self.table, self.told, name)
+        return c_source(self.table, self.told, name, self.rubs)
 
     def to_numpy(self) -> str:
-        """A Python module that tells the same and needs NumPy alone: force(length, pressure) and so on."""
+        """A Python module that tells the same and needs NumPy alone: force(length, pressure) and so on.
+
+        With friction at the crossings it has friction(length, pressure) and branches(length, pressure) too.
+        """
         from mckibben.potential.script import script
 
-        return script(self.table, self.told)
+        return script(self.table, self.told, self.rubs)
 
     @property
     def rubber_inside(self) -> float:
@@ -213,6 +219,14 @@ class Chart(Shown):
     def radius_error(self) -> float:
         """The largest error of the largest radius [m] at these states."""
         return float(self.data.attrs["radius_error"])
+
+    @property
+    def stiffness_error(self) -> float:
+        """The largest error of the stiffness [N/m] at these states, by the equations; NaN where it was not measured.
+
+        Elsewhere in the range expect up to twice as much, as of the other errors: they are the largest of some states.
+        """
+        return float(self.data.attrs.get("stiffness_error", np.nan))
 
     @property
     def friction_error(self) -> float:
@@ -242,13 +256,14 @@ class Chart(Shown):
     @property
     def told(self) -> tuple[str, ...]:
         """What must be known of the map in another program, line by line."""
-        about = self.data.attrs
+        about, error = self.data.attrs, self.stiffness_error
+        stiff = "" if np.isnan(error) else f", stiffness {show(error, 'N/m', 2)}"
         return (
             f"a map of a McKibben muscle, made by mckibben {about['mckibben_version']}",
             f"range: {self.range_said}; gauge pressure; force is positive where the muscle pulls",
             f"largest errors against the solver: force {show(self.force_error, 'N', 2)} (largest force "
             f"{show(self.largest_force, 'N', 4)}), volume {show(self.volume_error, 'm^3', 2)}, "
-            f"largest radius {show(self.radius_error, 'm', 2)}",
+            f"largest radius {show(self.radius_error, 'm', 2)}{stiff}",
             "outside of the range values go on smoothly, and are not the muscle's",
             *self.notes,
             "the muscle (TOML):",
@@ -270,7 +285,8 @@ class Chart(Shown):
         about = self.data.attrs
         rows = {}
         rubs = () if self.rubs is None else (("friction", "N"),)
-        for name, unit in (("force", "N"), ("volume", "m^3"), ("radius", "m"), *rubs):
+        stiff = () if np.isnan(self.stiffness_error) else (("stiffness", "N/m"),)
+        for name, unit in (("force", "N"), ("volume", "m^3"), ("radius", "m"), *stiff, *rubs):
             error, largest = float(about[f"{name}_error"]), float(about[f"largest_{name}"])
             rows[name] = (show(largest, unit, 4), show(error, unit, 2), f"{100 * error / largest:.2g} %")
         return pd.DataFrame(rows, index=["largest", "error", "relative"]).T

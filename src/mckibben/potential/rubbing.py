@@ -17,7 +17,7 @@ from mckibben.potential.evaluate import Table, across, chebyshev, edge
 if TYPE_CHECKING:
     import xarray as xr
 
-__all__ = ["FrictionAt", "Rubs", "rubbing", "rubbing_at", "rubs_of", "variables_of"]
+__all__ = ["LEAST", "FrictionAt", "Rubs", "rubbing", "rubbing_at", "rubs_of", "variables_of"]
 
 LEAST = 1e-9
 """Least friction [N] and stiffness [N/m] of a map: a series may be below 0 where there is nearly none."""

@@ -8,6 +8,7 @@ from importlib import resources
 import numpy as np
 
 from mckibben.potential.evaluate import Table
+from mckibben.potential.rubbing import LEAST, Rubs
 
 __all__ = ["script"]
 
@@ -60,14 +61,35 @@ def radius(length, pressure):
     h, P = np.broadcast_arrays(np.asarray(length, float), np.asarray(pressure, float))
     return largest_radius(TABLE, h.ravel(), P.ravel()).reshape(h.shape)
 '''
+_RUBS = '''
+
+FRICTION = {friction}
 
 
-def script(table: Table, notes: Iterable[str]) -> str:
-    """The module's text."""
+def friction(length, pressure):
+    """Friction [N] of crossings that all slip, half of what lies between the branches."""
+    h, P = np.broadcast_arrays(np.asarray(length, float), np.asarray(pressure, float))
+    y, (n, m) = across(TABLE, P.ravel()), FRICTION.shape
+    held = np.clip(h.ravel(), edge(TABLE.low, y)[0], edge(TABLE.high, y)[0])
+    X, Y = chebyshev((held - TABLE.length[0]) / TABLE.length[1], n), chebyshev(y, m)
+    return np.maximum((X * (FRICTION @ Y)).sum(0), {least!r}).reshape(h.shape)
+
+
+def branches(length, pressure):
+    """The forces [N] between which friction leaves the muscle: as it shortens, and as it lengthens."""
+    middle, half = force(length, pressure), friction(length, pressure)
+    return middle - half, middle + half
+'''
+"""What is added for a muscle with friction at its crossings."""
+
+
+def script(table: Table, notes: Iterable[str], rubs: Rubs | None = None) -> str:
+    """The module's text, of a muscle with friction (`rubs`) with that too."""
     source = resources.files("mckibben.potential").joinpath("evaluate.py").read_text(encoding="utf-8")
     body = source[source.index("from typing import") :]  # what it says of itself stands in the head
     said = "\n".join(notes).replace("\\", "/").replace('"""', "'''")
-    return _HEAD.format(notes=said) + "\n" + body + f"\n\nTABLE = {_numbers(table)}\n" + _CALLS
+    rubbed = "" if rubs is None else _RUBS.format(friction=_number(rubs.friction), least=LEAST)
+    return _HEAD.format(notes=said) + "\n" + body + f"\n\nTABLE = {_numbers(table)}\n" + _CALLS + rubbed
 
 
 def _numbers(table: Table) -> str:

@@ -18,7 +18,7 @@ if TYPE_CHECKING:
     import pandas as pd
     import xarray as xr
 
-__all__ = ["OF_MUSCLES", "OF_RIG", "TURNING", "Motion"]
+__all__ = ["HANGING", "OF_MUSCLES", "OF_RIG", "TURNING", "Motion"]
 
 OF_MUSCLES: dict[str, tuple[str, str]] = {
     "length": ("m", "distance between the fittings; of a slack muscle its own length"),
@@ -52,6 +52,8 @@ OF_RIG: dict[str, tuple[str, str]] = {
 """What is known of the whole."""
 TURNING = {"angle": ("rad", "angle of the pulley"), "angular_speed": ("rad/s", "its rate")}
 """What is known of a pulley too."""
+HANGING = {"position": ("m", "length that a straight cable would give the muscle: where the load is")}
+"""What is known too of a load on a cable that may go slack."""
 
 
 @attrs.frozen(eq=False, repr=False)

@@ -64,7 +64,7 @@ class Appearance:
                 raise SpecError(f"{call}.{name}", value, "must be a number from -360 to 360, in degrees")
         if isinstance(zoom, bool) or not isinstance(zoom, Real) or not 0.1 <= float(zoom) <= 100.0:
             raise SpecError(f"{call}.zoom", zoom, "must be a number from 0.1 to 100")
-        pixels = SIZES[axis] if size is None else _size(call, size)
+        pixels = SIZES[axis] if size is None else read_size(call, size)
         view = View(axis, float(tilt), float(turn))
         return cls(colour, bool(cut), bool(translucent), bool(ghost), view, float(zoom), pixels)
 
@@ -169,7 +169,8 @@ def left_out(result: Result) -> str:
     return f"{lost} of {len(result)} states were not reached and are left out." if lost else ""
 
 
-def _size(call: str, size: Any) -> tuple[int, int]:
+def read_size(call: str, size: Any) -> tuple[int, int]:
+    """Width and height of a picture in pixels; SpecError for what is none."""
     try:
         width, height = (int(side) if int(side) == side else -1 for side in size)
     except (TypeError, ValueError):

@@ -15,7 +15,7 @@ from mckibben.units import from_si
 from mckibben.view import style
 from mckibben.view.words import sentence
 
-__all__ = ["MANY", "energies", "moved", "names", "outside", "target", "words"]
+__all__ = ["MANY", "energies", "lines", "marks", "moved", "moves", "names", "outside", "target", "words"]
 
 WIDE, TALL = style.PAGE, 4.6
 MANY = 40
@@ -29,13 +29,13 @@ def moved(motion: Motion) -> Figure:
     """
     figure = style.new_figure(WIDE, TALL)
     panels = figure.subplots(2, 2, sharex=True)
-    _moves(panels[0, 0], motion)
-    _lines(panels[0, 1], motion, "pressure", "Pa")
+    moves(panels[0, 0], motion)
+    lines(panels[0, 1], motion, "pressure", "Pa")
     _commands(panels[0, 1], motion)
-    _lines(panels[1, 0], motion, "force", "N")
+    lines(panels[1, 0], motion, "force", "N")
     _energies(panels[1, 1], motion)
     for axes in panels.ravel():
-        _marks(axes, motion)
+        marks(axes, motion)
     for axes in panels[1]:
         axes.set_xlabel("Time (s)")
     for axes, letter in zip(panels.ravel(), "abcd", strict=True):
@@ -58,14 +58,15 @@ def outside(motion: Motion) -> np.ndarray:
     return np.asarray(~motion.of("inside").reshape(len(motion.time), -1).all(axis=1))
 
 
-def _moves(axes: Axes, motion: Motion) -> None:
+def moves(axes: Axes, motion: Motion) -> None:
+    """What moves over time: the length, or the angle of a pulley; a target is dashed."""
     if "angle" in motion.data:
         axes.plot(motion.time, style.shown(motion.angle, "rad"), color=style.BLUE, label="angle")
         axes.set_ylabel(style.axis_label("angle", "rad"))
         _target(axes, motion, "angle", "rad")
         style.tidy(axes, legend="best")
         return
-    _lines(axes, motion, "length", "m")
+    lines(axes, motion, "length", "m")
     _target(axes, motion, "length", "m")
 
 
@@ -92,7 +93,8 @@ def names(motion: Motion) -> Sequence[str]:
     return [str(one) for one in motion.data["muscle"].values] if motion.several else [""]
 
 
-def _lines(axes: Axes, motion: Motion, name: str, unit: str) -> None:
+def lines(axes: Axes, motion: Motion, name: str, unit: str) -> None:
+    """A variable of each muscle over time."""
     values = motion.of(name).reshape(len(motion.time), -1)
     for k, label in enumerate(names(motion)):
         axes.plot(
@@ -133,7 +135,7 @@ def _energies(axes: Axes, motion: Motion) -> None:
     other = axes.twinx()
     for label, (values, colour) in energies(motion).items():
         other.plot(motion.time, from_si(values, "J"), color=colour, linewidth=1.0, label=label)
-    lines, labels = axes.get_legend_handles_labels()
+    handles, labels = axes.get_legend_handles_labels()
     more, further = other.get_legend_handles_labels()
     other.set_ylabel("Energy (J)", fontsize=style.LABEL)
     other.tick_params(labelsize=style.TICK, width=0.6, length=2.5)
@@ -142,10 +144,10 @@ def _energies(axes: Axes, motion: Motion) -> None:
     if not more:
         other.set_axis_off()
     style.tidy(axes)
-    axes.legend(lines + more, labels + further, loc="upper left", fontsize=style.TICK - 0.5, frameon=False)
+    axes.legend(handles + more, labels + further, loc="upper left", fontsize=style.TICK - 0.5, frameon=False)
 
 
-def _marks(axes: Axes, motion: Motion) -> None:
+def marks(axes: Axes, motion: Motion) -> None:
     """Where the map is outside of its range, and when something happened."""
     out = outside(motion)
     if out.any():

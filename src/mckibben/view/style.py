@@ -17,7 +17,7 @@ from typing import Any
 import matplotlib
 from matplotlib.axes import Axes
 from matplotlib.backends.backend_agg import FigureCanvasAgg
-from matplotlib.figure import Figure
+from matplotlib.figure import Figure, FigureBase
 
 from mckibben import disk
 from mckibben.spec import Muscle, SpecError
@@ -116,7 +116,7 @@ def panel(axes: Axes, letter: str) -> None:
     axes.set_title(letter, loc="left", fontsize=LABEL, fontweight="bold", pad=4.0)
 
 
-def colour_bar(figure: Figure, colours: Any, place: Any, label: str, **options: Any) -> Any:
+def colour_bar(figure: FigureBase, colours: Any, place: Any, label: str, **options: Any) -> Any:
     """A colour bar in the house's fonts."""
     bar = figure.colorbar(colours, ax=place, **({"aspect": 28, "pad": 0.02} | options))
     bar.set_label(label, fontsize=TICK)

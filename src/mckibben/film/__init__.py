@@ -1,0 +1,1 @@
+"""Motions as moving pictures: where a rig in motion meets the shapes of its muscles."""
