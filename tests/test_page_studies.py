@@ -8,6 +8,7 @@ from typing import Any
 import pytest
 from pages import PAPER, answered, client, look
 from starlette.testclient import TestClient
+from workbooks import workbook
 
 import mckibben as mk
 from mckibben.data.compare import compare
@@ -61,7 +62,12 @@ def test_measured_points_are_compared_as_by_the_library(page: TestClient, socket
     [
         (b"a,b\n1,2\n", "x.csv", 400, "x.csv"),
         (b"", "x.csv", 400, "x.csv"),
-        (b"PK\x03\x04", "x.xlsx", 400, "save a workbook as CSV"),
+        (b"PK\x03\x04", "x.xlsx", 400, "x.xlsx: is no workbook that can be read"),
+        (b"PK\x03\x04", "x.csv", 400, "x.csv: is no workbook that can be read"),
+        (b"\xd0\xcf\x11\xe0", "x.csv", 400, "x.csv: is no XLSX workbook"),
+        (b"PK\x03\x04", "x.ods", 400, "save another workbook as XLSX or CSV"),
+        (workbook({"bench": [["p", "F"], [1, "slack"]]}), "x.xlsx", 400, "x.xlsx"),
+        (workbook({"bench": []}), "x.xlsx", 400, "x.xlsx: is empty"),
         (b"x", "../../etc/passwd", 400, "passwd: must end in .csv"),
         (b"\x00\xff\xfe", "x.txt", 400, "x.txt"),
     ],
@@ -95,7 +101,7 @@ def test_only_so_many_files_are_kept(tmp_path: Path) -> None:
     assert len(set(marks)) == len(marks)
     with pytest.raises(TaskError, match="no longer here"):
         kept.found(marks[0])
-    assert kept.found(marks[-1])[1] == "x.csv"
+    assert kept.found(marks[-1])["name"] == "x.csv"
 
 
 @pytest.mark.parametrize(

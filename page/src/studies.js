@@ -34,7 +34,7 @@ function begin(head, words, free, more, does) {
 function fit(line, store, measured) {
   const head = "Fit to measured data";
   if (!measured.data)
-    return void dialog(head, el("p", { text: "There are no measured data yet: drop a CSV file on the plot, or choose one below it." }));
+    return void dialog(head, el("p", { text: "There are no measured data yet: drop a CSV or XLSX file on the plot, or choose one below it." }));
   const free = new Free(store);
   begin(head, `Numbers are sought with which the forces differ least from those of ${measured.data.name}.`, free, [], () =>
     job(line, head, "fit", { ...store.asked(), data: measured.data.data, free: free.said() }, (found) => [
