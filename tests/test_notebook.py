@@ -162,6 +162,9 @@ def test_the_tutorial_runs_as_a_notebook(tmp_path: Path) -> None:
     assert not [out for cell in cells for out in cell.outputs if out.output_type == "error"]
     (picture,) = [cell for cell in cells if cell.source.endswith("figure")]
     assert [set(out.data) for out in picture.outputs] == [{"text/plain", "image/png"}]
+    (swept,) = [cell for cell in cells if cell.source == "data"]
+    assert "states: 14 stable" in Reader(swept.outputs[0].data["text/html"]).said
+    assert any("sweep: 14 done in" in str(out.get("data", "")) for cell in cells for out in cell.outputs)
     assert (tmp_path / "curve.png").exists()
     said = {cell.source: "".join(out.get("text", "") for out in cell.outputs) for cell in cells}
     assert any("101.22" in text for text in said.values())
