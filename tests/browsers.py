@@ -99,3 +99,18 @@ def environment_is_ready() -> str:
     if CHROMIUM is None:
         return "there is no Chromium here (Debian: apt-get install chromium)"
     return "" if os.name == "posix" else "the page is driven on Linux and macOS"
+
+
+def typed(seen: Watched, label: str, text: str) -> None:
+    """A value typed into a field."""
+    field = seen.tab.get_by_label(label, exact=True)
+    field.fill(text)
+    field.press("Enter")
+    seen.settled()
+
+
+def number(seen: Watched, name: str) -> str:
+    """A number of the state as it is shown."""
+    text: str = seen.tab.evaluate(f"[...document.querySelectorAll('dt')].find(x => x.textContent === '{name}')"
+                                  ".nextSibling.textContent")  # fmt: skip
+    return text.replace("\u2212", "-")

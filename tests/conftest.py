@@ -5,7 +5,12 @@ The environment is set before anything imports JAX or the package, which is why 
 
 import gc
 import os
+from collections.abc import Iterator
 from pathlib import Path
+from typing import Any
+
+import pytest
+from browsers import CHROMIUM, FLAGS, Watched, served
 
 CACHE = Path(__file__).parent.parent / ".pytest_cache" / "kernels"
 
@@ -39,3 +44,32 @@ settings.register_profile(
     "mckibben", derandomize=True, deadline=None, database=None, suppress_health_check=[HealthCheck.too_slow]
 )
 settings.load_profile("mckibben")
+
+
+# A page in a process of its own, and a tab of a browser before it.
+
+
+@pytest.fixture(scope="module")
+def address() -> Iterator[str]:
+    with served() as found:
+        yield found
+
+
+@pytest.fixture(scope="module")
+def chromium() -> Iterator[Any]:
+    from playwright.sync_api import sync_playwright
+
+    rules = ["--host-resolver-rules=MAP evil.example 127.0.0.1"]
+    with sync_playwright() as playwright:
+        made = playwright.chromium.launch(executable_path=CHROMIUM, args=[*FLAGS, *rules])
+        yield made
+        made.close()
+
+
+@pytest.fixture
+def seen(chromium: Any, address: str) -> Iterator[Watched]:
+    context = chromium.new_context(viewport={"width": 1366, "height": 900})
+    watched = Watched(context, address)
+    yield watched
+    watched.quiet()
+    context.close()

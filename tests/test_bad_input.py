@@ -139,8 +139,9 @@ def test_datasets_are_drawn_or_refused(tmp_path: Path) -> None:
     with pytest.raises(mk.SpecError, match="is for a result or a state"):
         mk.plot(beyond, kind="tension")
     swept = mk.sweep(PAPER, mk.Isometric(length="130 mm", pressure="1 bar"), {"ends": ["pinned"]}, workers=0)
-    with pytest.raises(mk.SpecError, match="a sweep has no picture of its own"):
-        mk.plot(swept)
+    assert "no state" in " ".join(text.get_text() for text in mk.plot(swept).axes[0].texts)
+    with pytest.raises(mk.SpecError, match="this part of a sweep does not say how its states came out"):
+        mk.plot(swept[["force"]])
     with pytest.raises(mk.SpecError, match=r'write a Dataset with data.to_netcdf\("x.nc"\)'):
         mk.save(swept, tmp_path / "out.nc")
 

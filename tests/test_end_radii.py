@@ -290,3 +290,12 @@ def test_a_sweep_over_them_is_single_runs() -> None:
         np.testing.assert_allclose(row, mk.run(one.replace("end_radii", radius), test).force, rtol=1e-8)
     with pytest.raises(mk.SpecError, match=r"end_radii\[0\]: is no field that can be varied; did you mean .end_radii."):
         mk.sweep(one, test, over={"end_radii[0]": ["11 mm", "12 mm"]})
+
+
+def test_the_end_of_a_path_is_found_past_states_that_are_lost_from_its_last_good_one() -> None:
+    """Between two steps to this end the state changes by more than a search from the first of them follows."""
+    muscle = mk.presets.paper().replace("end_radii", [R0, NARROW])
+    end = mk.limits(muscle, pressure="0.75 bar")
+    assert end.shortest_cause.startswith("the tube bulges back behind its fitting")
+    held = mk.solve(muscle, length=f"{1.0005 * end.shortest} m", pressure="0.75 bar")
+    assert held.verdict == "stable"

@@ -6,6 +6,7 @@ from typing import Any
 
 import jupytext
 import nbclient
+import nbformat
 import pytest
 
 import mckibben as mk
@@ -117,6 +118,43 @@ def test_an_error_is_one_message(paper: mk.Muscle) -> None:
     assert line == f"SpecError: {raised.value}"
 
 
+def executed(*cells: str) -> list[Any]:
+    """The outputs of cells that are run one after the other."""
+    book = nbformat.v4.new_notebook(cells=[nbformat.v4.new_code_cell(cell) for cell in cells])
+    nbclient.NotebookClient(book, timeout=300, allow_errors=True).execute()
+    return [cell.outputs for cell in book.cells]
+
+
+def test_a_bar_tells_how_far_long_work_is() -> None:
+    _, (swept,), (cut, error) = executed(
+        "import mckibben as mk\npaper, test = mk.presets.paper(), mk.Isometric(length='115 mm', pressure='1 bar')",
+        "with mk.progress('sweep') as watch:\n"
+        "    _ = mk.sweep(paper, test, {'braid.angle': ['36 deg', '37 deg']}, tolerance=1e-4, watch=watch)",
+        "with mk.progress('cut <b>') as watch:\n    watch(1, 3)\n    paper.replace('braid.angle', '95 deg')",
+    )
+    page = Reader(swept.data["text/html"])
+    assert page.tags == ["progress"]
+    assert page.text.startswith(" sweep: 2 done in ")
+    assert swept.data["text/plain"] == page.text.strip()
+    assert 'value="2" max="2"' in swept.data["text/html"]
+    assert Reader(cut.data["text/html"]).text.startswith(" cut <b>: 1 ended in ")
+    assert len(error.traceback) == 1
+
+
+def test_a_bar_in_a_terminal_and_none_in_a_log(
+    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    for terminal in ("", "1"):
+        monkeypatch.setenv("FORCE_COLOR", terminal)
+        with mk.progress("fit", unit="muscles") as watch:
+            watch(3)
+            watch(5, 8, "second part")
+        said = capsys.readouterr()
+        assert said.out == ""
+        assert ("second part" in said.err and "5/8" in said.err) == bool(terminal)
+        assert terminal or not said.err
+
+
 def test_the_tutorial_runs_as_a_notebook(tmp_path: Path) -> None:
     book = jupytext.read(TUTORIAL)
     nbclient.NotebookClient(book, timeout=300, resources={"metadata": {"path": str(tmp_path)}}).execute()
@@ -124,6 +162,9 @@ def test_the_tutorial_runs_as_a_notebook(tmp_path: Path) -> None:
     assert not [out for cell in cells for out in cell.outputs if out.output_type == "error"]
     (picture,) = [cell for cell in cells if cell.source.endswith("figure")]
     assert [set(out.data) for out in picture.outputs] == [{"text/plain", "image/png"}]
+    (swept,) = [cell for cell in cells if cell.source == "data"]
+    assert "states: 14 stable" in Reader(swept.outputs[0].data["text/html"]).said
+    assert any("sweep: 14 done in" in str(out.get("data", "")) for cell in cells for out in cell.outputs)
     assert (tmp_path / "curve.png").exists()
     said = {cell.source: "".join(out.get("text", "") for out in cell.outputs) for cell in cells}
     assert any("101.22" in text for text in said.values())

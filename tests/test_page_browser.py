@@ -1,13 +1,12 @@
 """The page in a real browser: it loads, follows, says what is wrong, and asks for nothing from outside."""
 
 import json
-from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
 import pypdf
 import pytest
-from browsers import CHROMIUM, FLAGS, Watched, axe, environment_is_ready, served
+from browsers import Watched, axe, environment_is_ready, number, typed
 
 import mckibben as mk
 
@@ -18,47 +17,6 @@ pytestmark = [
 
 BENCH = Path(__file__).parent.parent / "examples" / "bench.csv"
 PAPER = mk.presets.paper()
-
-
-@pytest.fixture(scope="module")
-def address() -> Iterator[str]:
-    with served() as found:
-        yield found
-
-
-@pytest.fixture(scope="module")
-def chromium() -> Iterator[Any]:
-    from playwright.sync_api import sync_playwright
-
-    rules = ["--host-resolver-rules=MAP evil.example 127.0.0.1"]
-    with sync_playwright() as playwright:
-        made = playwright.chromium.launch(executable_path=CHROMIUM, args=[*FLAGS, *rules])
-        yield made
-        made.close()
-
-
-@pytest.fixture
-def seen(chromium: Any, address: str) -> Iterator[Watched]:
-    context = chromium.new_context(viewport={"width": 1366, "height": 900})
-    watched = Watched(context, address)
-    yield watched
-    watched.quiet()
-    context.close()
-
-
-def typed(seen: Watched, label: str, text: str) -> None:
-    """A value typed into a field."""
-    field = seen.tab.get_by_label(label, exact=True)
-    field.fill(text)
-    field.press("Enter")
-    seen.settled()
-
-
-def number(seen: Watched, name: str) -> str:
-    """A number of the state as it is shown."""
-    text: str = seen.tab.evaluate(f"[...document.querySelectorAll('dt')].find(x => x.textContent === '{name}')"
-                                  ".nextSibling.textContent")  # fmt: skip
-    return text.replace("\u2212", "-")
 
 
 def test_what_is_shown_is_what_the_library_says(seen: Watched) -> None:

@@ -8,12 +8,14 @@ from typing import Any
 import pytest
 from pages import PAPER, answered, client, look
 from starlette.testclient import TestClient
+from workbooks import workbook
 
 import mckibben as mk
 from mckibben.data.compare import compare
 from mckibben.experiments import effects as experiment
 from mckibben.page import held
 from mckibben.page.kept import MOST, Kept
+from mckibben.page.muscles import muscle_of
 from mckibben.page.tasks import TaskError
 from mckibben.page.transfers import DATA
 
@@ -61,7 +63,12 @@ def test_measured_points_are_compared_as_by_the_library(page: TestClient, socket
     [
         (b"a,b\n1,2\n", "x.csv", 400, "x.csv"),
         (b"", "x.csv", 400, "x.csv"),
-        (b"PK\x03\x04", "x.xlsx", 400, "save a workbook as CSV"),
+        (b"PK\x03\x04", "x.xlsx", 400, "x.xlsx: is no workbook that can be read"),
+        (b"PK\x03\x04", "x.csv", 400, "x.csv: is no workbook that can be read"),
+        (b"\xd0\xcf\x11\xe0", "x.csv", 400, "x.csv: is no XLSX workbook"),
+        (b"PK\x03\x04", "x.ods", 400, "save another workbook as XLSX or CSV"),
+        (workbook({"bench": [["p", "F"], [1, "slack"]]}), "x.xlsx", 400, "x.xlsx"),
+        (workbook({"bench": []}), "x.xlsx", 400, "x.xlsx: is empty"),
         (b"x", "../../etc/passwd", 400, "passwd: must end in .csv"),
         (b"\x00\xff\xfe", "x.txt", 400, "x.txt"),
     ],
@@ -95,7 +102,7 @@ def test_only_so_many_files_are_kept(tmp_path: Path) -> None:
     assert len(set(marks)) == len(marks)
     with pytest.raises(TaskError, match="no longer here"):
         kept.found(marks[0])
-    assert kept.found(marks[-1])[1] == "x.csv"
+    assert kept.found(marks[-1])["name"] == "x.csv"
 
 
 @pytest.mark.parametrize(
@@ -129,6 +136,30 @@ def test_a_wrong_design_is_one_message(socket: Any, more: dict[str, Any], words:
     told = answered(socket, "design", look() | (wish | more if more else {}))["error"]
     assert words in told
     assert "/tmp" not in told
+
+
+def test_two_goals_give_the_front_of_the_library(socket: Any) -> None:
+    free = {"braid.angle": "42 deg to 55 deg", "braid.radius": "8 mm to 14 mm"}
+    goals = [
+        {"maximise": "force", "pressure": "1 bar", "contraction": "5 %"},
+        {"minimise": "diameter", "pressure": "1 bar"},
+    ]
+    told = answered(socket, "design", look() | {"free": free, "objective": goals, "designs": 64})
+    assert told["progress"] == {"done": 64, "of": 64}
+    front = told["done"]["front"]
+    found = mk.design(
+        mk.presets.paper(), free, [mk.Maximise(mk.ForceAt(pressure="1 bar", contraction="5 %")),
+                                   mk.Minimise(mk.Diameter(pressure="1 bar"))], designs=64,
+    )  # fmt: skip
+    forces, diameters = (found.front[name].values for name in ("force", "diameter"))
+    order = forces.argsort(kind="stable")
+    assert front["goals"][0]["values"] == pytest.approx(forces[order].tolist(), rel=1e-5)
+    assert front["goals"][1]["values"] == pytest.approx((1e3 * diameters[order]).tolist(), rel=1e-5)
+    assert [goal["short"] for goal in front["goals"]] == ["Force [N]", "Largest diameter [mm]"]
+    assert [goal["better"] for goal in front["goals"]] == ["larger is better", "smaller is better"]
+    assert [muscle_of(one) for one in front["muscles"]] == [found.member(int(k)) for k in order]
+    assert muscle_of(front["muscles"][front["middle"]]) == found.muscle
+    assert front["numbers"] == list(free)
 
 
 def test_effects_tell_how_far_they_are(socket: Any, monkeypatch: pytest.MonkeyPatch) -> None:

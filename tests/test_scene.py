@@ -15,7 +15,7 @@ from test_cli import invoke, refused
 import mckibben as mk
 from mckibben.results.result import Result
 from mckibben.spec import SpecError
-from mckibben.view import mesh, render
+from mckibben.view import mesh, render, stage
 from mckibben.view.braid3d import SHARE, Body, display_diameter
 from mckibben.view.tube import Tube
 
@@ -339,3 +339,14 @@ def test_links_and_devices_are_refused(curve: Result, tmp_path: Path) -> None:
     for force in (False, True):
         with pytest.raises(SpecError, match="is no regular file"):
             mk.save_shape(curve, link, force=force)
+
+
+def test_a_notebook_turns_it_where_pyvista_can(monkeypatch: pytest.MonkeyPatch) -> None:
+    """What is installed beside it decides; trame alone is not enough for PyVista since 0.48."""
+    pyvista = pytest.importorskip("pyvista")
+    monkeypatch.setitem(sys.modules, "IPython", None)
+    for registered in ((), ("trame",)):
+        monkeypatch.setattr(pyvista, "registered_jupyter_backends", lambda found=registered: found, raising=False)
+        assert stage._turns(pyvista) == bool(registered)
+    monkeypatch.delitem(sys.modules, "IPython")
+    assert not stage._turns(pyvista)

@@ -13,8 +13,9 @@ export function axis(label, size) {
 }
 
 export class Chart {
-  constructor(id, height, options) {
-    Object.assign(this, { place: at(id), height, options, data: null, plot: null, key: "" });
+  // `place` is an element, or the name of one.
+  constructor(place, height, options) {
+    Object.assign(this, { place: typeof place === "string" ? at(place) : place, height, options, data: null, plot: null, key: "" });
     new ResizeObserver(() => this.resize()).observe(this.place);
     onTheme(() => this.renew());
   }

@@ -3,6 +3,7 @@
 import { at, el } from "./dom.js";
 import { Slider } from "./slider.js";
 
+const PASSING = 500;
 let made = 0;
 
 export class Form {
@@ -14,23 +15,32 @@ export class Form {
     this.root.addEventListener("submit", (event) => event.preventDefault());
   }
 
+  // A control that had the focus has it afterwards, or somebody without a mouse would begin anew.
   build() {
     const { told } = this.store.now;
+    const focused = this.root.contains(document.activeElement) ? document.activeElement.dataset : {};
     this.sliders = new Map();
     this.selects = new Map();
-    const groups = new Map();
+    const groups = new Map(told.groups.map((name) => [name, []]));
     for (const one of told.sliders) {
       const slider = new Slider({ ...one, hint: one.meaning, mark: one.assumed ? "assumed" : "" },
         (value, settled) => this.store.changeField(one.name, value, settled));
       slider.root.title = one.source || one.meaning;
+      Object.assign(slider.field.dataset, { of: one.name, as: "field" });
+      Object.assign(slider.range.dataset, { of: one.name, as: "range" });
       this.sliders.set(one.name, slider);
-      if (!groups.has(one.group)) groups.set(one.group, []);
       groups.get(one.group).push(slider.root);
     }
-    if (told.choices.length) groups.set("Effects", told.choices.map((one) => this.choice(one)));
-    this.root.replaceChildren(...[...groups].map(([name, controls]) =>
+    for (const one of [...told.choices].reverse()) {
+      groups.get(one.group).unshift(this.choice(one));
+    }
+    this.law = el("p", { class: "quiet" });
+    if (groups.get("Rubber").length) groups.get("Rubber").push(this.law);
+    this.root.replaceChildren(...[...groups].filter(([, controls]) => controls.length).map(([name, controls]) =>
       el("fieldset", {}, el("legend", { text: name }), ...controls)));
     at("about").replaceChildren(el("strong", { text: told.name }), told.about ? `: ${told.about}. ` : ". ", told.remark);
+    const again = focused.of && this.root.querySelector(`[data-of="${CSS.escape(focused.of)}"][data-as="${focused.as}"]`);
+    if (again) again.focus();
     const assumed = told.assumed.map((one) => el("li", {}, el("code", { text: one.name }), ` ${one.meaning}`));
     at("assumed").hidden = !assumed.length;
     at("assumed").querySelector("ul").replaceChildren(...assumed);
@@ -40,12 +50,21 @@ export class Form {
 
   choice(one) {
     const id = `choice-${++made}`;
-    const select = el("select", { id, on: { change: () => this.choose(one.name, one.options[select.selectedIndex][0]) } },
+    let [keys, soon] = [false, 0]; // by keyboard the words in between are passed, not meant
+    const taken = () => this.choose(one.name, one.options[select.selectedIndex][0]);
+    const change = () => (clearTimeout(soon), (soon = setTimeout(taken, keys ? PASSING : 0)));
+    const select = el("select", { id, on: { change, keydown: () => (keys = true), pointerdown: () => (keys = false) } },
       ...one.options.map(([, word]) => el("option", { text: word })));
+    Object.assign(select.dataset, { of: one.name, as: "choice" });
     this.selects.set(one.name, { select, one });
     return el("div", { class: "choice", title: one.meaning },
       el("span", { class: "name" }, el("label", { for: id, text: one.label }),
         one.assumed ? el("span", { class: "mark", text: "assumed" }) : null), select);
+  }
+
+  // How stiff the rubber is, as the state that is seen has it.
+  stiffness(words) {
+    this.law.textContent = words && `${words[0].toUpperCase()}${words.slice(1)}.`;
   }
 
   show() {
@@ -55,8 +74,7 @@ export class Form {
       slider.root.classList.toggle("changed", one.name in this.store.now.changes);
     }
     for (const { select, one } of this.selects.values()) {
-      const value = this.store.now.changes[one.name] ?? one.value;
-      select.selectedIndex = one.options.findIndex(([option]) => option === value);
+      select.selectedIndex = one.options.findIndex(([option]) => option === one.value);
     }
   }
 }

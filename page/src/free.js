@@ -2,6 +2,7 @@
 
 import { el } from "./dom.js";
 import { plain } from "./format.js";
+import { dialog } from "./notices.js";
 
 const USUAL = ["braid.angle", "chamber.law.c1", "chamber.law.mu", "chamber.law.E"];
 
@@ -35,4 +36,15 @@ export class Free {
       return [one.name, `${from} to ${to}`];
     }));
   }
+}
+
+// The dialog in which a study is begun; `does(form)` is given the form, to come back to.
+export function begin(head, words, free, more, does) {
+  const form = el("form", { autocomplete: "off" }, el("p", { text: words }), free.root, ...more,
+    el("button", { type: "submit", class: "main", text: "Begin" }));
+  form.addEventListener("submit", (event) => {
+    event.preventDefault();
+    does(form);
+  });
+  dialog(head, form);
 }

@@ -3,8 +3,8 @@
 import { at, el } from "./dom.js";
 import { dialog } from "./notices.js";
 
-// Runs a task; `show(answer)` makes what the dialog holds afterwards.
-export async function job(line, head, task, said, show) {
+// Runs a task; `show(answer)` makes what the dialog holds afterwards. Where nothing came of it one can go back to `form`.
+export async function job(line, head, task, said, show, form = null) {
   const bar = el("progress", { "aria-label": "Progress" });
   const far = el("p", { class: "quiet", role: "status", text: "Begun; what is new is compiled first." });
   let answer;
@@ -26,7 +26,8 @@ export async function job(line, head, task, said, show) {
   } catch (error) {
     box.removeEventListener("close", closed);
     const text = error.kind === "cancelled" ? "Cancelled." : `It was not done: ${error.message}`;
-    if (box.open) dialog(head, el("p", { role: "status", text }));
+    const back = form && el("button", { type: "button", class: "main", text: "Back", on: { click: () => dialog(head, form) } });
+    if (box.open) dialog(head, el("p", { role: "status", text }), ...(back ? [back] : []));
   }
 }
 

@@ -90,6 +90,7 @@ function seen(state, since) {
   numbers(own, others);
   energies(state.energy);
   cautions(state.cautions);
+  form.stiffness(state.law);
   stage.show(state.shape, state.good ? "" : state.last ? "Last good state" : "As made");
   range.move(point);
   painted("input to shape", since);
@@ -142,8 +143,7 @@ async function open(muscle, bench) {
 // Another choice makes another kind of muscle, with other numbers: it is opened anew, pressure and load stay.
 async function choose(name, value) {
   const { pressure, hold, value: amount } = store.now;
-  const said = store.muscle();
-  const done = await open({ ...said, changes: { ...said.changes, [name]: value } }, { pressure, hold, value: amount });
+  const done = await open({ ...store.muscle(), choose: { [name]: value } }, { pressure, hold, value: amount });
   if (!done) form.show();
 }
 

@@ -3,7 +3,7 @@
 import { at, el, table } from "./dom.js";
 import { answered } from "./files.js";
 import { said } from "./format.js";
-import { notice } from "./notices.js";
+import { dialog, notice } from "./notices.js";
 import { Newest } from "./socket.js";
 
 const MOST = 1e7;
@@ -34,15 +34,29 @@ export class Measured {
     for (const kind of ["dragover", "drop"]) addEventListener(kind, (event) => event.preventDefault());
   }
 
-  async take(file) {
+  // Of a workbook with several sheets, one is asked for.
+  async take(file, sheet = "") {
     try {
       if (file.size > MOST) throw new Error(`the file is too large: measured data have at most ${MOST / 1e6} MB`);
-      const response = await fetch(`data?name=${encodeURIComponent(file.name)}`, { method: "POST", body: file });
-      this.data = await (await answered(response)).json();
+      const called = new URLSearchParams({ name: file.name, sheet });
+      const response = await fetch(`data?${called}`, { method: "POST", body: file });
+      const told = await (await answered(response)).json();
+      if (told.sheets) return void this.choose(file, told.sheets);
+      this.data = told;
       this.newest.ask(true);
     } catch (error) {
       notice(`${file.name} was not read: ${error.message}`, "wrong");
     }
+  }
+
+  choose(file, sheets) {
+    const take = (name) => {
+      at("dialog").close();
+      this.take(file, name);
+    };
+    const buttons = sheets.map((name) => el("li", {}, el("button", { type: "button", text: name, on: { click: () => take(name) } })));
+    dialog("Which sheet?", el("p", { text: `${file.name} has several sheets. Take the one that holds the measured points.` }),
+      el("ul", { class: "sheets" }, ...buttons));
   }
 
   // The muscle has changed: the differences are found anew.

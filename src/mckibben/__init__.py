@@ -25,6 +25,7 @@ _PUBLIC = {
         "Diameter", "FibreSafety", "FibreTension", "ForceVariation", "JammingMargin", "StabilityMargin", "Work",
     ),
     "mckibben.spec.wishes": ("Demand", "Maximise", "Minimise"),
+    "mckibben.watching": ("progress",),
     "mckibben.experiments.run": ("run",),
     "mckibben.experiments.solve": ("solve",),
     "mckibben.experiments.dead_zone": ("DeadZone", "dead_zone"),

@@ -1,4 +1,4 @@
-"""What every command shares: where text goes, errors as one line and an exit code, progress, and tables of states.
+"""What every command shares: where text goes, errors as one line and an exit code, and tables of states.
 
 Results go to stdout; errors, notes about the run and progress to stderr.
 """
@@ -7,9 +7,8 @@ from __future__ import annotations
 
 import functools
 import json
-from collections.abc import Callable, Iterator, Sequence
-from contextlib import contextmanager
-from typing import TYPE_CHECKING, Any, ParamSpec, Protocol
+from collections.abc import Callable, Sequence
+from typing import TYPE_CHECKING, Any, ParamSpec
 
 import typer
 
@@ -24,11 +23,9 @@ __all__ = [
     "INPUT",
     "INTERRUPTED",
     "STOPPED",
-    "Watch",
     "command",
     "complain",
     "examples",
-    "progress",
     "say",
     "show_json",
     "table",
@@ -46,15 +43,6 @@ INTERRUPTED = 130
 """Exit code after Ctrl-C, as shells have it: 128 plus the number of the signal."""
 
 P = ParamSpec("P")
-
-
-class Watch(Protocol):
-    """A function that is called with (done, in all) and, where the work has several parts, the name of the next one.
-
-    In all is 0 where nobody knows.
-    """
-
-    def __call__(self, done: int, total: int, what: str = "", /) -> None: ...
 
 
 def examples(*lines: str) -> str:
@@ -125,65 +113,6 @@ def command(function: Callable[P, int | None]) -> Callable[P, None]:
     paragraphs = (function.__doc__ or "").split("\n\n")  # the help keeps the line breaks inside them
     wrapped.__doc__ = "\n\n".join(" ".join(paragraph.split()) for paragraph in paragraphs)
     return wrapped
-
-
-@contextmanager
-def progress(what: str, hidden: bool = False, unit: str = "") -> Iterator[Watch]:
-    """A function to call with (done, in all) during long work; it draws a bar if stderr is a terminal.
-
-    The bar shows the time elapsed and the time left. With `unit` ("designs") it also shows how many are done a second.
-    What was done before the first call, as when a sweep goes on, does not count for these.
-    """
-    console = _console(stderr=True)
-    if hidden or not console.is_terminal:
-        yield lambda done, total, what="", /: None
-        return
-    from rich.progress import (
-        BarColumn,
-        MofNCompleteColumn,
-        Progress,
-        SpinnerColumn,
-        TextColumn,
-        TimeElapsedColumn,
-        TimeRemainingColumn,
-    )
-    from rich.text import Text
-
-    class Elapsed(TimeElapsedColumn):
-        """Time since the work began, with its label."""
-
-        def render(self, task: Any) -> Text:
-            return Text.assemble("elapsed ", super().render(task))
-
-    class Left(TimeRemainingColumn):
-        """Time that is left, with its label."""
-
-        def render(self, task: Any) -> Text:
-            return Text.assemble("left ", super().render(task))
-
-    columns = (
-        SpinnerColumn(),
-        TextColumn("{task.description}"),
-        BarColumn(),
-        MofNCompleteColumn(),
-        *((TextColumn("{task.fields[rate]}"),) if unit else ()),
-        Elapsed(),
-        Left(),
-    )
-    with Progress(*columns, console=console, transient=True) as bar:
-        task = bar.add_task(f"{what}: compiling", total=None, rate="")
-        begun = False
-
-        def watch(done: int, total: int, part: str = "", /) -> None:
-            nonlocal begun
-            if unit and not begun:
-                bar.reset(task, completed=done, total=total or None)
-                begun = True
-            speed = bar.tasks[0].speed
-            rate = f"{speed:.3g} {unit}/s" if unit and speed else ""
-            bar.update(task, description=part or what, completed=done, total=total or None, rate=rate)
-
-        yield watch
 
 
 def table(

@@ -7,8 +7,8 @@ import warnings
 from collections.abc import Iterator
 from contextlib import contextmanager
 
-from mckibben.app.console import Watch, progress
 from mckibben.compiled import folder
+from mckibben.watching import Watch, progress, unseen
 
 __all__ = ["solving"]
 
@@ -19,7 +19,7 @@ def solving(what: str, hidden: bool = False, unit: str = "") -> Iterator[Watch]:
     os.environ.setdefault("TF_CPP_MIN_LOG_LEVEL", "3")  # the compiler's own remarks; errors still raise
     from mckibben.compiled.kernel import keeping
 
-    with progress(what, hidden, unit) as watch, keeping(folder.ready()):
+    with unseen() if hidden else progress(what, unit=unit) as watch, keeping(folder.ready()):
         from mckibben.experiments.run import MuscleWarning
 
         warnings.simplefilter("ignore", MuscleWarning)

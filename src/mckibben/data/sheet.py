@@ -8,7 +8,7 @@ from typing import Any
 from mckibben.data.text import Row
 from mckibben.spec.errors import SpecError, nearest
 
-__all__ = ["is_workbook", "rows_of_sheet"]
+__all__ = ["filled_sheets", "is_workbook", "rows_of_sheet"]
 
 _STARTS = (b"PK\x03\x04", b"\xd0\xcf\x11\xe0")
 """How workbooks begin: those of today are archives, those of old are OLE files."""
@@ -21,6 +21,22 @@ def is_workbook(content: bytes) -> bool:
 
 def rows_of_sheet(content: bytes, name: str, sheet: str | int | None) -> list[Row]:
     """The rows of a sheet that are not empty, with their numbers; SpecError where several sheets could be meant."""
+    sheets = _sheets(content, name)
+    chosen = _chosen(sheet, list(sheets), _filled(sheets), name)
+    return [
+        (number, [_plain(cell) for cell in row])
+        for number, row in enumerate(sheets[chosen], 1)
+        if any(cell != "" for cell in row)
+    ]
+
+
+def filled_sheets(content: bytes, name: str) -> list[str]:
+    """Names of the sheets of a workbook that hold something."""
+    return _filled(_sheets(content, name))
+
+
+def _sheets(content: bytes, name: str) -> dict[str, list[list[Any]]]:
+    """The cells of all sheets by their names."""
     try:
         import python_calamine as calamine
     except ImportError as error:
@@ -28,17 +44,14 @@ def rows_of_sheet(content: bytes, name: str, sheet: str | int | None) -> list[Ro
         raise SpecError(name, allowed="is a workbook, which takes python-calamine to read", advice=advice) from error
     try:
         book = calamine.load_workbook(io.BytesIO(content))
-        names = list(book.sheet_names)
-        sheets = {known: book.get_sheet_by_name(known).to_python(skip_empty_area=False) for known in names}
+        return {known: book.get_sheet_by_name(known).to_python(skip_empty_area=False) for known in book.sheet_names}
     except Exception as error:  # it raises many kinds for files that are damaged or something else
         said = "is no workbook that can be read"
         raise SpecError(name, allowed=said, advice="save it again as XLSX or CSV") from error
-    filled = [known for known in names if any(cell != "" for row in sheets[known] for cell in row)]
-    return [
-        (number, [_plain(cell) for cell in row])
-        for number, row in enumerate(sheets[_chosen(sheet, names, filled, name)], 1)
-        if any(cell != "" for cell in row)
-    ]
+
+
+def _filled(sheets: dict[str, list[list[Any]]]) -> list[str]:
+    return [known for known, rows in sheets.items() if any(cell != "" for row in rows for cell in row)]
 
 
 def _chosen(sheet: str | int | None, names: list[str], filled: list[str], name: str) -> str:

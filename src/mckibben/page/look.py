@@ -13,6 +13,7 @@ from mckibben.results.rows import COLUMNS, rows
 from mckibben.results.told import cells, columns, verdict
 from mckibben.results.variables import STEP, has
 from mckibben.results.verdict import Verdict
+from mckibben.spec import Muscle
 from mckibben.units import show
 
 __all__ = ["look", "solved"]
@@ -49,6 +50,7 @@ def look(asked: Asked) -> dict[str, Any]:
         "energy": [] if drawn is None else _energies(drawn),
         "shape": as_made(state.muscle) if drawn is None else shape(drawn.result),
         "cautions": list((state if drawn is None else drawn).cautions),
+        "law": _law(state.muscle),
     }
 
 
@@ -82,3 +84,12 @@ def _energies(state: State) -> list[dict[str, Any]]:
         for variable, name in PARTS.items()
         if has(state.muscle, variable)
     ]
+
+
+def _law(muscle: Muscle) -> str:
+    """How stiff the rubber is at small strains, by which laws compare; empty of a chamber of no such law."""
+    law = None if muscle.chamber is None else muscle.chamber.law
+    if law is None or not hasattr(law, "shear_modulus"):
+        return ""
+    remark = law.__remark__() if hasattr(law, "__remark__") else ""
+    return f"shear modulus at small strains {show(law.shear_modulus, 'kPa', 4)}" + (f"; {remark}" if remark else "")

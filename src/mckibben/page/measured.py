@@ -11,13 +11,15 @@ import numpy as np
 
 from mckibben.data.compare import compare
 from mckibben.data.read import read_data
+from mckibben.data.sheet import filled_sheets, is_workbook
 from mckibben.data.values import Data
 from mckibben.page.asked import Asked
 from mckibben.page.plain import listed, number
+from mckibben.page.workbook import check_workbook
 from mckibben.sheet.levels import curve
 from mckibben.spec import SpecError
 
-__all__ = ["data_of", "described", "measured"]
+__all__ = ["data_of", "described", "measured", "sheets_of"]
 
 TESTS = 8
 """Tests that are compared at most."""
@@ -31,16 +33,33 @@ WIDE = 1e-3
 
 def data_of(said: Mapping[str, Any]) -> Data:
     """The measured points of a file, which goes by the name that its user gave it. SpecError for what is wrong."""
-    return _read(said["path"], said["name"])
+    return _read(said["path"], said["name"], said["sheet"])
 
 
 @lru_cache(maxsize=4)
-def _read(path: str, name: str) -> Data:
+def _read(path: str, name: str, sheet: str) -> Data:
+    _workbook(path, name)
     try:
-        return read_data(path)
+        return read_data(path, sheet=sheet or None)
     except SpecError as error:
         field, allowed = (text.replace(Path(path).name, name) for text in (error.field, error.allowed))
         raise SpecError(field, error.value, allowed, error.advice) from error
+
+
+def sheets_of(said: Mapping[str, Any]) -> list[str]:
+    """The sheets of a workbook among which its user has to choose; empty where there is nothing to choose."""
+    content = None if said["sheet"] else _workbook(said["path"], said["name"])
+    found = [] if content is None else filled_sheets(content, said["name"])
+    return found if len(found) > 1 else []
+
+
+def _workbook(path: str, name: str) -> bytes | None:
+    """The content of a workbook that may be read; None of another file."""
+    content = Path(path).read_bytes()
+    if not is_workbook(content):
+        return None
+    check_workbook(content, name)
+    return content
 
 
 def described(data: Data, name: str) -> dict[str, Any]:

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import Any
 
+from mckibben.page.chosen import changes_of
 from mckibben.spec import Muscle, SpecError, Test
 from mckibben.spec.change import changed_muscle
 from mckibben.spec.declared import walk
@@ -22,7 +23,8 @@ TOP = 3e5
 def muscle_of(said: Any) -> Muscle:
     """The muscle of what a browser says: a table "from" as in a case file, and "changes" by dotted name.
 
-    The changes are put in together, as `Muscle.replace` would each. SpecError for whatever is wrong.
+    The changes are put in together, as `Muscle.replace` would each; a number of a list goes by "end_radii[1]".
+    SpecError for whatever is wrong.
     """
     if not isinstance(said, Mapping) or not isinstance(said.get("from"), Mapping):
         raise SpecError("muscle", allowed="must be a table with what it starts from")
@@ -33,7 +35,7 @@ def muscle_of(said: Any) -> Muscle:
     muscle = muscle_from_mapping(said["from"])
     if not changes:
         return muscle
-    made: Muscle = changed_muscle(muscle, dict(changes))
+    made: Muscle = changed_muscle(muscle, changes_of(muscle, changes))
     return made
 
 

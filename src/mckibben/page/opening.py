@@ -7,7 +7,8 @@ from pathlib import Path
 from typing import Any
 
 from mckibben.files.case import read_case
-from mckibben.page.controls import choices, sliders
+from mckibben.page.chosen import chosen
+from mckibben.page.controls import GROUPS, choices, sliders
 from mckibben.page.muscles import muscle_of, top_pressure
 from mckibben.sheet.levels import rated
 from mckibben.spec import Muscle, SpecError, Test, presets
@@ -23,10 +24,17 @@ FULLER = 1.5
 
 
 def opened(said: Mapping[str, Any]) -> dict[str, Any]:
-    """What a page shows of the muscle that a browser says. SpecError for whatever is wrong with it."""
+    """What a page shows of the muscle that a browser says, with another choice where it says one, "choose".
+
+    SpecError for whatever is wrong with it.
+    """
     start = said.get("from") if isinstance(said, Mapping) else None
     changes = said.get("changes") if isinstance(said, Mapping) else None
+    choose = said.get("choose") if isinstance(said, Mapping) else None
     muscle = muscle_of(said)
+    for name, value in choose.items() if isinstance(choose, Mapping) else ():
+        muscle = chosen(muscle, str(name), value)
+    changes = changes or choose
     short = isinstance(start, Mapping) and set(start) == {"preset"}  # what the catalogue knows need not be said
     own: Any = dict(start) if short and not changes and isinstance(start, Mapping) else to_mapping(muscle)
     return _told(muscle, own, None)
@@ -51,6 +59,7 @@ def _told(muscle: Muscle, mapping: dict[str, Any], test: Test | None) -> dict[st
         "name": muscle.name or "a muscle without a name",
         "sliders": sliders(muscle),
         "choices": choices(muscle),
+        "groups": list(dict.fromkeys(GROUPS.values())),
         "assumed": [{"name": name, "meaning": meanings.get(name, "")} for name in muscle.assumed],
         "about": presets.about(preset) if preset in presets.names() else "",
         "remark": muscle.__remark__(),

@@ -78,9 +78,10 @@ def _file(said: Mapping[str, Any], tell: Any) -> Any:
 
 
 def _data(said: Mapping[str, Any], tell: Any) -> Any:
-    from mckibben.page.measured import data_of, described
+    from mckibben.page.measured import data_of, described, sheets_of
 
-    return described(data_of(said), said["name"])
+    several = sheets_of(said)
+    return {"sheets": several} if several else described(data_of(said), said["name"])
 
 
 def _measured(said: Mapping[str, Any], tell: Any) -> Any:

@@ -56,15 +56,16 @@ def _data(page: Page) -> Any:
     async def answer(request: Request) -> Response:
         name = os.path.basename(request.query_params.get("name", ""))[:80] or "data.csv"
         try:
-            mark = page.kept.put(page.folder, name, await _body(request, DATA, "measured data"))
+            content = await _body(request, DATA, "measured data")
+            mark = page.kept.put(page.folder, name, content, request.query_params.get("sheet", "")[:80])
         except TaskError as error:
             return _error(413 if "too large" in str(error) else 400, error)
-        path, _ = page.kept.found(mark)
-        answer = await _done(page.beside, "data", {"path": path, "name": name})
-        if answer.status_code != 200:
-            page.kept.drop(mark)
-            return answer
-        return JSONResponse(json.loads(bytes(answer.body)) | {"data": mark})
+        made = await _done(page.beside, "data", page.kept.found(mark))
+        told = json.loads(bytes(made.body))
+        if made.status_code == 200 and "sheets" not in told:
+            return JSONResponse(told | {"data": mark})
+        page.kept.drop(mark)  # it is sent again, with its sheet
+        return made
 
     return answer
 

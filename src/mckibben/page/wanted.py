@@ -1,4 +1,4 @@
-"""A design that a page asks for: what is free, one goal and limits, as a design file says them."""
+"""A design that a page asks for: what is free, one goal or several, and limits, as a design file says them."""
 
 from __future__ import annotations
 
@@ -12,6 +12,7 @@ import tomli_w
 from mckibben.designing.design import design
 from mckibben.designing.designfile import read_design
 from mckibben.page.asked import Asked
+from mckibben.page.fronts import front_of
 from mckibben.page.jobs import Tell, free_of
 from mckibben.page.opening import opened
 from mckibben.spec import SpecError
@@ -24,7 +25,7 @@ MOST = 2_000
 
 
 def designed(asked: Asked, said: Mapping[str, Any], tell: Tell) -> dict[str, Any]:
-    """The muscle that does best what is wanted, opened; its numbers, limits and notes."""
+    """The muscle that does best what is wanted, opened; its numbers, limits and notes; of several goals the front."""
     tables = {"muscle": to_mapping(asked.muscle), "free": free_of(said), "objective": said.get("objective"),
               "subject_to": said.get("subject_to", []), "options": {"designs": said.get("designs")}}  # fmt: skip
     case = _read(tables)
@@ -37,7 +38,14 @@ def designed(asked: Asked, said: Mapping[str, Any], tell: Tell) -> dict[str, Any
     rows = [[str(name), str(row["value"]), str(row["searched"])] for name, row in found.table.iterrows()]
     limits = [[str(row["limit"]), str(row["value"]), f"{row['room [%]']:g} %"] for _, row in found.limits.iterrows()]
     notes = [*found.notes, *(() if found.converged else ("the search had not settled",))]
-    told = {"rows": rows, "limits": limits, "feasible": found.feasible, "notes": notes, "tried": found.tried}
+    told = {
+        "front": front_of(found),
+        "rows": rows,
+        "limits": limits,
+        "feasible": found.feasible,
+        "notes": notes,
+        "tried": found.tried,
+    }
     return told | {"opened": opened({"from": to_mapping(found.muscle)})}
 
 

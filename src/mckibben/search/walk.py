@@ -230,7 +230,11 @@ def _root(walk: _Walk, here: Look, done: float, bad: Look, beyond: float, tolera
     def margin(fraction: float) -> float:
         if fraction not in seen:
             seen[fraction] = walk.trial(fraction, here.state)
-        return walk.margin(seen[fraction])
+        if not seen[fraction].state.converged:  # too far from there: on from the nearest one that is known
+            known = [one for one in seen if seen[one].state.converged]
+            seen[fraction] = walk.trial(fraction, seen[min(known, key=lambda one: abs(one - fraction))].state)
+        found = walk.margin(seen[fraction])
+        return found if np.isfinite(found) else walk.margin(bad)  # what is not found is not good
 
     from scipy.optimize import brentq  # here, because few searches need what takes a third of a second to import
 

@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
+import mckibben.results.swept  # noqa: F401  # whoever has a sweep has `data.mckibben`, and sees it in a notebook
 from mckibben.measure.report import versions
 from mckibben.spec.text import to_toml
 from mckibben.sweeps.outcome import DESIGN, STATES, Columns, empty

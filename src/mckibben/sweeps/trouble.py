@@ -18,3 +18,7 @@ class SweepError(RuntimeError):
     >>> data.sizes["braid.angle"]
     2
     """
+
+    def _render_traceback_(self) -> list[str]:
+        """What a notebook shows: where the package noticed does not help."""
+        return [f"{type(self).__name__}: {self}"]

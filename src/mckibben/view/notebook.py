@@ -7,6 +7,7 @@ from collections.abc import Callable, Iterable, Sequence
 from html import escape
 from typing import Any
 
+import numpy as np
 from matplotlib.figure import Figure
 
 from mckibben.data.values import Data
@@ -19,6 +20,7 @@ from mckibben.results.motionfit import MotionFit
 from mckibben.results.result import Result, State
 from mckibben.results.rows import COLUMNS, rows
 from mckibben.results.sensitivity import Sensitivity
+from mckibben.results.swept import Swept, said
 from mckibben.results.told import cells, columns, verdict
 from mckibben.results.tolerances import Tolerances
 from mckibben.spec import TESTS, Muscle, spec_classes
@@ -32,6 +34,8 @@ __all__ = ["html"]
 
 MOST = 8
 """Rows of a table; of more the ones in the middle are left out."""
+REASONS = 3
+"""Reasons why designs of a sweep are not complete that are named."""
 
 Rows = Iterable[Sequence[str]]
 
@@ -126,10 +130,23 @@ def _data(data: Data) -> str:
     return _part(repr(data).strip("<>"), _table(("test", "points", "force"), _few(body)), data.assumptions)
 
 
+def _swept(found: Swept) -> str:
+    heading = repr(found).strip("<>").partition(";")[0]
+    if found.large:
+        return _part(
+            heading, _frame(found.fields), ["many states: data.mckibben.counts and .table look at all of them"]
+        )
+    counts = [f"designs: {said(found.statuses)}", f"states: {said(found.counts)}"]
+    reasons = [str(one) for one in np.unique(found.data["reason"].values.astype(str)) if one][:REASONS]
+    tables = _frame(found.fields) + _frame(found.table)
+    notes = [*counts, *(f"not complete: {one}" for one in reasons)]
+    return _part(heading, tables, notes) + _image(plot(found.data), heading)
+
+
 _KINDS: dict[Any, Callable[[Any], str]] = {
     Muscle: _muscle, Result: _result, State: _state, Fitted: _fit, Designed: _design, Tolerances: _tolerances,
     Sensitivity: _sensitivity, Effects: _effects, Data: _data, Chart: _chart, Motion: _motion,
-    MotionFit: _motion_fit,
+    MotionFit: _motion_fit, Swept: _swept,
     tuple(TESTS.values()): _test, spec_classes(): _part_of_muscle,
 }  # fmt: skip
 """What shows each kind of value."""

@@ -17,6 +17,7 @@ from mckibben.results.motion import Motion
 from mckibben.results.motionfit import MotionFit
 from mckibben.results.result import Result, State
 from mckibben.results.sensitivity import Sensitivity
+from mckibben.results.swept import is_sweep
 from mckibben.results.tolerances import Tolerances
 from mckibben.spec.errors import SpecError, nearest
 from mckibben.view import curves, maps, style
@@ -28,6 +29,7 @@ from mckibben.view.fit import fitted
 from mckibben.view.measured import overlay
 from mckibben.view.motion import moved
 from mckibben.view.motionfit import followed
+from mckibben.view.swept import swept
 from mckibben.view.tolerances import scatter
 from mckibben.view.tornado import tornado
 from mckibben.view.words import headline
@@ -42,7 +44,7 @@ KINDS: dict[str, Callable[[Result], Figure]] = {
     "shares": curves.shares,
 }
 """The pictures of a result."""
-_TAKES = "a result of run, solve, fit, design, chart, simulate, sensitivity, tolerances, effects, a map"
+_TAKES = "a result of run, solve, sweep, fit, design, chart, simulate, sensitivity, tolerances, effects, a map"
 
 
 def plot(result: Any, kind: str = "auto", data: Any = None) -> Figure:
@@ -54,12 +56,12 @@ def plot(result: Any, kind: str = "auto", data: Any = None) -> Figure:
     against contraction. Isotonic and free contraction: contraction (and length) against pressure. Protocol and step:
     force, length and pressure state by state, and force against length. States that are not stable are marked; states
     that were not reached are gaps, with a note. A `State` is drawn as its radius and braid angle along the muscle, a
-    force map as contours over length and pressure, a working range as the region in that plane, a sensitivity as a
-    tornado chart, tolerances as distributions with the part of each number, effects as bars, a fit as its forces over
-    the measured ones, with what is left, a design as the force of the best over its contraction with what was demanded,
-    or as its front, a map that `chart` made as its forces over contraction, and over the range with its edges, a
-    motion as what moves, pressure, force and air over time, a fit of one as measured values over it with what is left,
-    a frequency response as gain and phase.
+    force map as contours over length and pressure, a sweep as its last states over what varies, a working range as the
+    region in that plane, a sensitivity as a tornado chart, tolerances as distributions with the part of each number,
+    effects as bars, a fit as its forces over the measured ones, with what is left, a design as the force of the best
+    over its contraction with what was demanded, or as its front, a map that `chart` made as its forces over
+    contraction, and over the range with its edges, a motion as what moves, pressure, force and air over time, a fit of
+    one as measured values over it with what is left, a frequency response as gain and phase.
 
     Args:
         result: what one of these calls gave, or several results of one kind of test by their names, as
@@ -146,13 +148,15 @@ def _headed(figure: Figure, result: Result) -> Figure:
 
 
 def _of_dataset(data: Any) -> Callable[[Any], Figure]:
-    """What draws a Dataset; SpecError for what is none of the package's, or a sweep."""
+    """What draws a Dataset; SpecError for what is none of the package's."""
     names = set(getattr(data, "data_vars", ()))
     if {"force", "largest_fibre_tension"} <= names:
         return maps.force_map
     if {"shortest", "longest"} <= names:
         return maps.region
     if "sweep" in getattr(data, "attrs", {}):
-        advice = 'choose what to draw: data["force"].isel(step=-1).plot()'
-        raise SpecError("plot", allowed="a sweep has no picture of its own", advice=advice)
+        if not is_sweep(data):
+            advice = "draw it by data.plot(), or keep its verdict and status"
+            raise SpecError("plot", allowed="this part of a sweep does not say how its states came out", advice=advice)
+        return swept
     raise SpecError("plot", data, f"must be {_TAKES}")

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import io
+import sys
 import textwrap
 from functools import lru_cache
 from importlib.util import find_spec
@@ -55,6 +56,14 @@ def shown(pyvista: Any) -> Any:
     return Scene
 
 
+def _turns(pyvista: Any) -> bool:
+    """Whether a notebook can turn a plotter: by pyvista[jupyter], which is no part of the extra."""
+    if "IPython" not in sys.modules:
+        return False
+    registered = getattr(pyvista, "registered_jupyter_backends", None)  # before 0.48 there is only trame
+    return find_spec("trame") is not None if registered is None else bool(registered())
+
+
 @attrs.frozen
 class Stage:
     """A plotter, and what stays the same from one state to the next: scale of colours and camera."""
@@ -79,7 +88,7 @@ class Stage:
         pyvista = ready(call)
         hidden = off_screen if has_display() else True
         theme = pyvista.themes.DocumentTheme()
-        if find_spec("trame") is None:  # PyVista's interactive view in notebooks, which is no part of the extra
+        if not _turns(pyvista):
             theme.jupyter_backend = "static"
         plotter = shown(pyvista)(off_screen=hidden, window_size=list(look.size), border=False, theme=theme)
         plotter.set_background(PAPER)
