@@ -113,6 +113,18 @@ def test_the_drawing_is_that_of_the_motion_and_of_the_solver(lift: mk.Motion) ->
         assert muscle.get_linestyle() == "-"
 
 
+def test_a_frame_is_what_the_whole_figure_shows(joint: mk.Motion) -> None:
+    """Only what moves is drawn anew."""
+    frames = frames_of(joint, 10.0, 1.0, whole=True)
+    picture = drawn(joint, frames, [(None,) * len(frames)] * 2)
+    for k in (5, 0, 3):
+        quick = np.asarray(picture.image(k)).astype(int)
+        canvas: Any = picture.figure.canvas
+        canvas.draw()
+        whole = np.asarray(canvas.buffer_rgba())[:, :, :3].astype(int)
+        assert (np.abs(quick - whole).max(axis=2) > 20).mean() < 1e-3  # a line may lie over a tick, not below it
+
+
 def test_the_mass_stands_on_its_stop_and_leaves_it(lift: mk.Motion) -> None:
     frames = frames_of(lift, 5.0, 1.0, whole=True)
     picture = drawn(lift, frames, [(None,) * len(frames)])

@@ -54,10 +54,15 @@ class Picture:
         self.still, self.pen = Pen(self.axes, self.layout.way), Pen(self.axes, self.layout.way)
         self.layout.still(self.still)
         self.show(0)
-        self.figure.canvas.draw()  # lays it out once for all frames
+        canvas: Any = self.figure.canvas
+        canvas.draw()  # lays it out once for all frames
         self.figure.set_layout_engine("none")
         for axes in self.figure.get_axes():
             _pinned(axes)
+        self._moving(visible=False)
+        canvas.draw()
+        self.behind = canvas.copy_from_bbox(self.figure.bbox)
+        self._moving(visible=True)
 
     def _panels(self, motion: Motion, scale: ScalarMappable) -> None:
         tall = self.layout.way != "right"
@@ -104,11 +109,21 @@ class Picture:
                 mark.set_ydata([float(values[k])])
 
     def image(self, k: int) -> Image.Image:
-        """A frame in pixels."""
+        """A frame in pixels: what moves is drawn over what does not, which is drawn once."""
         self.show(k)
         canvas: Any = self.figure.canvas
-        canvas.draw()
+        canvas.restore_region(self.behind)
+        renderer = canvas.get_renderer()
+        for one in self._moving():
+            one.draw(renderer)
         return Image.fromarray(np.asarray(canvas.buffer_rgba())[:, :, :3].copy())
+
+    def _moving(self, visible: bool = True) -> list[Any]:
+        """What changes from frame to frame, from behind to the front; shown or not."""
+        found = [*self.pen.made, self.axes.title, *(mark for mark, _ in self.dots)]
+        for one in found:
+            one.set_visible(visible)
+        return sorted(found, key=lambda one: one.get_zorder())
 
 
 def _pinned(axes: Any) -> None:
