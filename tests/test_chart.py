@@ -246,6 +246,10 @@ def test_c_tells_the_same(chart: mk.Chart, moving: Table, edge: str, tmp_path: P
         scale = np.abs(np.asarray(expected, float)).max()
         most = 1e-11 if k == CANCELS else 1e-12
         assert np.abs(out[:, k] - expected).max() <= most * scale, k
+    nothing, out = np.full(1, np.nan), np.zeros((1, 8))  # what is no number gives none, and reads nothing elsewhere
+    pointers = (ctypes.c_void_p(one.ctypes.data) for one in (h, nothing, out))
+    ctypes.CDLL(str(tmp_path / "all.so")).all(1, *pointers)
+    assert np.isnan(out[0, [0, 7]]).all()
 
 
 def test_the_module_for_numpy_alone_tells_the_same(chart: mk.Chart, tmp_path: Path) -> None:

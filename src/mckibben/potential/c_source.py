@@ -68,8 +68,9 @@ static inline void @NAME@_edge(const double (*knots)[2], int count, double y, do
     f[1] = f[2] = 0.0;
     if (count == 1) return;
     const double step = 2.0 / (count - 1);
-    int k = (int)@NAME@_clip(floor((y + 1.0) / step), 0.0, count - 2.0);
-    const double t = (y + 1.0) / step - k;
+    const double place = (y + 1.0) / step;
+    const int k = place > 0.0 ? (int)@NAME@_clip(floor(place), 0.0, count - 2.0) : 0; /* 0 where y is no number, too */
+    const double t = place - k;
     const double f0 = knots[k][0], d0 = step * knots[k][1], f1 = knots[k + 1][0], d1 = step * knots[k + 1][1];
     const double c2 = 3.0 * (f1 - f0) - 2.0 * d0 - d1, c3 = 2.0 * (f0 - f1) + d0 + d1;
     f[0] = f0 + t * (d0 + t * (c2 + t * c3));
