@@ -38,6 +38,7 @@ class Line:
     stretch: bool = False  #: whether the fibres stretch
     roll: bool = False  #: whether they roll
     give: bool = False  #: whether the fittings give way
+    programmed: bool = False  #: whether the braid angle varies along the length
 
     @classmethod
     def of(cls, muscle: Muscle, size: int) -> "Line":
@@ -49,12 +50,13 @@ class Line:
         roll, give, profile = muscle.braid.joint == Joint.PIN, muscle.gives_way, muscle.braid.angle_profile
         whole = len(muscle.end_radii or ()) == 2 or (profile is not None and not profile.mirrored)
         count, modes = (2 * size, "all") if whole else (size, "odd")
-        return cls(count, str(muscle.ends), modes, muscle.braid.fibre.stretch, roll, give)  # type: ignore[arg-type]
+        stretch, programmed = muscle.braid.fibre.stretch, profile is not None
+        return cls(count, str(muscle.ends), modes, stretch, roll, give, programmed)  # type: ignore[arg-type]
 
     @property
     def form(self) -> Form:
         """What the local variables mean."""
-        return line_form(self.stretch, self.roll, self.give, self.ends == "free")
+        return line_form(self.stretch, self.roll, self.give, self.ends == "free", self.programmed)
 
     @property
     def points(self) -> int:
