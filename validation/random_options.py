@@ -27,7 +27,7 @@ import numpy as np
 import mckibben as mk
 from mckibben.solver.bench import Bench
 from mckibben.solver.equilibrium import Equilibrium
-from mckibben.solver.find import find
+from mckibben.solver.find import find, refine
 from mckibben.solver.held import Held
 
 FILE, PAGE = OUT / "random_options.jsonl", Path(__file__).with_name("random_options.md")
@@ -72,20 +72,20 @@ def checked(case: dict[str, Any]) -> dict[str, Any]:
         found["judges"] = judge_target(bench, held, case["id"])
         return found
     b = bench.placement(held)
-    for size in FINE:
-        fine = find(bench.problem(size, b), held)
-        if fine.converged and fine.tail**1.5 <= max(found["estimate"], ROUNDING):
-            break
-    found["fine"], found["size"] = fine.converged, size
+    fine = best = find(bench.problem(FINE[0], b), held)
+    found["fine"], found["size"] = fine.converged, FINE[0]
     if not fine.converged:
         return found
+    if fine.tail**1.5 > max(found["estimate"], ROUNDING):
+        best, found["size"] = refine(fine, bench.problem(FINE[1], b), held), FINE[1]
+    found["fine"] = best.converged
     size = abs(usual.force) + np.pi * float(muscle.braid.radius) ** 2 * pressure
-    found["error"], found["tail"] = abs(usual.force - fine.force) / size, fine.tail
+    found["error"], found["tail"] = abs(usual.force - best.force) / size, best.tail
     found["slope_length"] = abs(_slope(fine, held, 0) - fine.force) / size
     found["slope_pressure"] = abs(_slope(fine, held, 1) + fine.volume) / fine.volume
     if len(muscle.end_radii or ()) == 2:
         turned = Bench.of(muscle.replace("end_radii", list((muscle.end_radii or ())[::-1])))
-        other = find(turned.problem(size, b), held)
+        other = find(turned.problem(FINE[0], b), held)
         found["mirror"] = max(abs(other.force - fine.force) / size, abs(other.volume / fine.volume - 1.0))
     if usual.modes.force_control == 0:
         back = find(fine.problem, Held.of(force=fine.force, pressure=pressure), fine, radius=0.1)
