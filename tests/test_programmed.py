@@ -130,18 +130,19 @@ def test_unknowns_converge() -> None:
     assert off < state.error_estimate < 4.0 * off
 
 
-@pytest.mark.parametrize("muscle", [halves(), LOPSIDED], ids=["half", "whole"])
-def test_the_error_estimate_is_twice_what_more_unknowns_change(muscle: mk.Muscle) -> None:
-    """To a fifth, whatever is held: the step that foretells the finer state is one of Newton's and a little more."""
+@pytest.mark.parametrize(("muscle", "safe"), [(halves(), 2.0), (LOPSIDED, 8.0)], ids=["spline", "monotone"])
+def test_the_error_estimate_is_what_more_unknowns_change(muscle: mk.Muscle, safe: float) -> None:
+    """Times 2, and 8 for monotone pieces; to a fifth, whatever is held: the step that foretells the finer state is one
+    of Newton's and a little more."""
     coarse, fine = found(muscle, size=12), found(muscle, size=24)
     load = abs(fine.force) + math.pi * R0**2 * P
     by_force = estimated_error(coarse, Held.of(length=H, pressure=P))
-    assert by_force == pytest.approx(2.0 * abs(coarse.force - fine.force) / load, rel=0.2)
+    assert by_force == pytest.approx(safe * abs(coarse.force - fine.force) / load, rel=0.2)
     for names, free in ((("force", "pressure"), "length"), (("length", "volume"), "pressure")):
         held = Held(names, tuple(float(getattr(fine, name)) for name in names))
         state = find(coarse.problem, held, coarse, radius=0.1)
         assert state.converged
-        miss = 2.0 * abs(getattr(state, free) / getattr(fine, free) - 1.0)
+        miss = safe * abs(getattr(state, free) / getattr(fine, free) - 1.0)
         assert estimated_error(state, held) >= 0.8 * miss > 1e-8
         if free == "length":
             assert estimated_error(state, held) <= 1.2 * miss

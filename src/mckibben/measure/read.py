@@ -19,7 +19,7 @@ from mckibben.discretise.fields import Placed, place, points_at, states
 from mckibben.discretise.spectral import Line
 from mckibben.measure.kink import Missed, missed
 from mckibben.measure.peak import peak
-from mckibben.measure.unresolved import unresolved_all
+from mckibben.measure.unresolved import asks_for_step, unresolved_all
 from mckibben.model.angle import cos, radians, slope
 from mckibben.model.energy import fittings_density, lagrangian
 from mckibben.model.fibres import axial_density, fibre_densities
@@ -134,11 +134,11 @@ def with_kinks(reading: Reading, basis: Basis, on: Placed, state: Unknowns, s: S
 def with_unresolved(
     reading: Reading, basis: Basis, on: Placed, states: Unknowns, values: Array, each: int | None = None
 ) -> Reading:
-    """Readings of n states with what the unknowns do not resolve, where the braid angle varies along the length.
+    """Readings of n states with what the unknowns do not resolve, where nothing else tells it.
 
     `values` (n, l) are those of the equations; `on` is one muscle, or with each=0 n of them.
     """
-    if on.made is None or states.memory is not None:
+    if states.memory is not None or not asks_for_step(basis, on.p):
         return reading
     assert isinstance(basis, Line)
     found = unresolved_all(basis, on, states, values, each)

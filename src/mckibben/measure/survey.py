@@ -9,6 +9,7 @@ import numpy as np
 from mckibben.measure.judge import Judgement, judge, shape_of
 from mckibben.measure.meridian import meridian
 from mckibben.measure.read import NODES, Reading, Stable, read_many
+from mckibben.measure.unresolved import asks_for_step
 from mckibben.model.extension import longest_of
 from mckibben.model.parameters import Parameters
 from mckibben.results.verdict import Modes, Shape
@@ -153,7 +154,7 @@ def survey(
 def _bound(problem: Problem, reading: Reading, held: tuple[Any, ...], remembers: bool = False) -> np.ndarray:
     """The error estimate; of states that remember a path nothing is conserved along the length."""
     missed = 0.0 if reading.missed is None else np.asarray(reading.missed.under(held))
-    if problem.p.profile is not None and not remembers:
+    if asks_for_step(problem.basis, problem.p) and not remembers:
         return unresolved_bound(missed)
     near = nearly_straight(problem, reading.numbers["length"]) | (problem.p.profile is not None) | remembers
     return error_bound(reading.conserved_variation, reading.coefficient_tail, near, missed)
@@ -165,7 +166,7 @@ def errors(problem: Problem, u: np.ndarray, loads: np.ndarray, held: tuple[Any, 
 
 
 def unresolved_bound(missed: np.ndarray | float) -> np.ndarray:
-    """Of programmed braids, along which nothing is conserved: what `measure.unresolved` found, and kinks."""
+    """Of what asks for a step: what `measure.unresolved` found, and kinks."""
     return np.maximum(missed, ROUNDING)
 
 

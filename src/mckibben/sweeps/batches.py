@@ -16,6 +16,7 @@ import numpy as np
 from mckibben.discretise.spectral import Line
 from mckibben.measure.many import Appraised, appraised
 from mckibben.measure.survey import PLAIN_SLOPE, STRETCHED, error_bound, unresolved_bound
+from mckibben.measure.unresolved import asks_for_step
 from mckibben.solver.bench import sizes_for
 from mckibben.solver.system import Unknowns
 from mckibben.sweeps.groups import Group, surely_reached
@@ -112,7 +113,7 @@ def _arranged(paths: Paths, found: Appraised, some: np.ndarray, good: np.ndarray
     seen = {name: by_design(values) for name, values in found.numbers.items()}
     group = paths.group.take(where)
     missed = 0.0 if found.missed is None else by_design(found.missed.under(group.held))
-    if group.p.profile is None:
+    if not asks_for_step(group.line, group.p):
         stretched = seen["length"] > STRETCHED * surely_reached(group.p, group.line.ends)[:, None]
         bound = error_bound(seen["conserved_variation"], seen["coefficient_tail"], stretched, missed)
     else:
