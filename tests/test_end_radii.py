@@ -16,9 +16,10 @@ from mckibben.model.cylinder import cylinder_force
 from mckibben.model.extension import between, full_extension, longest
 from mckibben.model.kinematics import end_angle
 from mckibben.model.parameters import parameters
+from mckibben.search.finer import estimated_error
 from mckibben.solver.bench import Bench
 from mckibben.solver.equilibrium import Equilibrium
-from mckibben.solver.find import find
+from mckibben.solver.find import find, refine
 from mckibben.solver.held import Held
 from mckibben.spec.change import changed_muscle
 from mckibben.spec.text import muscle_from_mapping, to_mapping
@@ -280,6 +281,20 @@ def test_wrong_input(changes: dict[str, Any], said: str) -> None:
 def test_the_papers_mesh_has_the_radius_of_the_braid() -> None:
     with pytest.raises(mk.SpecError, match="in rigid fittings of its own radius"):
         mk.run(ended(NARROW), mk.Isometric(length="110 mm", pressure="1 bar"), discretisation="paper")
+
+
+def test_the_error_estimate_knows_of_the_excess_at_the_fittings() -> None:
+    """Of a bare braid with a small force, whose conserved quantity is the same to eight digits all the same."""
+    fibre = mk.Fibre(diameter="0.46 mm", E="3.2 GPa", nu=0.4, natural="straight", stretch=True)
+    braid = mk.Braid(radius="5.76 mm", length="108.56 mm", angle="69.28 deg", fibres=90, fibre=fibre)
+    muscle = mk.Muscle(braid=braid, chamber=None, ends="pinned", end_radii="5.965 mm")
+    held, bench = Held.of(length=0.105, pressure=0.0), Bench.of(muscle)
+    b = bench.placement(held)
+    coarse = find(bench.problem(24, b), held)
+    fine = refine(coarse, bench.problem(48, b), held)
+    off = abs(coarse.force / fine.force - 1.0)
+    assert off > 1e-6
+    assert off < estimated_error(coarse, held) < 4.0 * off
 
 
 def test_a_sweep_over_them_is_single_runs() -> None:

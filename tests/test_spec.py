@@ -7,6 +7,7 @@ import sys
 
 import attrs
 import jax
+import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
@@ -145,6 +146,15 @@ def test_angle_from_axis_is_converted_once():
 @pytest.mark.parametrize("count", [0, 1, 7, -2, 56.5, "56", None, True, 200_000])
 def test_fibres_must_be_even_and_whole(count):
     with pytest.raises(SpecError) as caught:
+        braid(fibres=count)
+    assert caught.value.field == "braid.fibres"
+
+
+@pytest.mark.parametrize("count", [[40, 56], (56,), {"at": [0.5], "fibres": [40]}, np.array([40, 56]), lambda v: 56])
+def test_fibres_do_not_end_within_a_braid(count):
+    """What is refused says why, and what may vary along the length."""
+    said = r"braid\.fibres.*one whole number all along.*would hold nothing; vary the angle.*braid\.angle_profile"
+    with pytest.raises(SpecError, match=said) as caught:
         braid(fibres=count)
     assert caught.value.field == "braid.fibres"
 

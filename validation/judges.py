@@ -25,8 +25,8 @@ def judge_target(bench: Bench, held: Held, seed: int) -> dict[str, Any]:
     b = placement(bench, held)
     problem, fine = bench.problem(SIZE, b), bench.problem(FINE, b)
     found = {
-        "pressure first": along(problem, held, float(bench.p.H0), pressure_first=True),
-        "pressure last": along(problem, held, float(bench.p.H0), pressure_first=False),
+        "pressure first": along(problem, held, float(bench.p.rest), pressure_first=True),
+        "pressure last": along(problem, held, float(bench.p.rest), pressure_first=False),
     }
     for k, state in enumerate(starts(problem, seed)):
         found[f"random start {k}"] = find(problem, held, state)
@@ -43,10 +43,10 @@ def placement(bench: Bench, held: Held) -> float:
     return crowding(bench.p, np.array([length]), np.array([force]), np.array([held.get("pressure", 0.0)]))
 
 
-def along(problem: Problem, held: Held, H0: float, pressure_first: bool) -> Equilibrium | None:
+def along(problem: Problem, held: Held, rest_length: float, pressure_first: bool) -> Equilibrium | None:
     """The end of a path of two legs from rest; None where it is not reached."""
     axial = held.names[0] if held.names[1] == "pressure" else held.names[1]
-    rest, target, pressure = (H0 if axial == "length" else 0.0), held.get(axial), held.get("pressure")
+    rest, target, pressure = (rest_length if axial == "length" else 0.0), held.get(axial), held.get("pressure")
     share = np.linspace(0.0, 1.0, STEPS)
     still, moving = np.zeros(STEPS), rest + share * (target - rest)
     if pressure_first:

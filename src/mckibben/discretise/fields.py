@@ -36,6 +36,7 @@ __all__ = [
     "cosines",
     "known",
     "place",
+    "placed_on",
     "points_at",
     "states",
     "variables",
@@ -102,6 +103,13 @@ def place(basis: Any, p: Parameters, b: Number) -> Placed:
     with_angle = p._replace(theta0=Known.of(p.theta0))
     x = basis.operators().x
     return Placed(with_angle, b, scales(p), jnp.asarray(basis.jacobian(x, p, b)), _made(basis, p, b, x))
+
+
+def placed_on(basis: Any, on: Placed) -> Placed:
+    """The same muscle, crowded as much, on another discretisation."""
+    x = basis.operators().x
+    jacobian = jnp.asarray(basis.jacobian(x, on.p, on.b))
+    return on._replace(jacobian=jacobian, made=_made(basis, on.p, on.b, x))
 
 
 def _made(basis: Any, p: Parameters, b: Number, x: Floats) -> Made | None:

@@ -3,7 +3,9 @@
 theta is integrated from theta' = rate(psi), Eq. (12). Where fibres stretch, that rate gains a field, the excess, and
 the logarithm q of their stretch is integrated from q' = excess tan(theta). As EA grows the excess tends to zero, so
 that the shapes of stiff fibres lie in a plane of unknowns, not along a curved valley: searches stay quick. In a
-programmed braid theta goes along with theta0, and the excess with theta0' (theory page).
+programmed braid theta goes along with theta0, and the excess with theta0'; there the logarithm of the radius is
+integrated in place of that of the stretch, which follows: its rate knows nothing of theta0', which has kinks (theory
+page).
 """
 
 from functools import cache
@@ -14,7 +16,7 @@ import jax.numpy as jnp
 
 from mckibben.discretise.fields import Form, Integral, Variables
 from mckibben.model.angle import cos, radians, sin, tan
-from mckibben.model.kinematics import angle_rate, end_angle, stretch_rate
+from mckibben.model.kinematics import angle_rate, end_angle, made_angle, stretch_rate
 from mckibben.model.parameters import Number, Parameters
 from mckibben.model.point import Made, Point
 
@@ -28,9 +30,9 @@ ANGLES = {"theta", "psi", "turn", "roll"}
 
 
 @cache
-def line_form(stretch: bool, roll: bool, slide: bool, give: bool, free: bool) -> Form:
+def line_form(stretch: bool, roll: bool, slide: bool, give: bool, free: bool, programmed: bool = False) -> Form:
     """The form of a line with some of the effects, and with its end radius free or held."""
-    integrated = ("theta", "log_stretch") if stretch else ("theta",)
+    integrated = ("theta", "log_radius" if programmed else "log_stretch") if stretch else ("theta",)
     effects = (
         ("excess", "turn") if stretch else (), ("roll", "roll_rate") if roll else (),
         ("slide", "slide_rate") if slide else (), ("give",) if give else (),
@@ -40,7 +42,12 @@ def line_form(stretch: bool, roll: bool, slide: bool, give: bool, free: bool) ->
 
     def point(x: Variables, p: Parameters, made: Made | None) -> Point:
         at = dict(zip(names, x, strict=True))
-        stretched = _stretch(at["log_stretch"], None if free else at["turn"], p) if stretch else None
+        stretched = None
+        if programmed:
+            assert made is not None
+            stretched = jnp.exp(at["log_radius"]) * cos(made.angle) / cos(at["theta"])
+        elif stretch:
+            stretched = _stretch(at["log_stretch"], None if free else at["turn"], p)
         effects = {name: at.get(name) for name in ("roll", "roll_rate", "give")}
         if slide:
             effects |= {name: p.H0 * at[name] for name in ("slide", "slide_rate")}
@@ -54,10 +61,16 @@ def line_form(stretch: bool, roll: bool, slide: bool, give: bool, free: bool) ->
         at = dict(zip(names, x, strict=True))
         return stretch_rate(Point(at["theta"], None, None, excess=_excess(at, made), made=made), p)
 
+    def widening(x: Variables, p: Parameters, made: Made | None) -> Number:
+        """r'/r = s sin(psi)/r, whatever the fibres' stretch."""
+        at = dict(zip(names, x, strict=True))
+        return sin(at["psi"]) * tan(at["theta"]) / (p.R0 * tan(made_angle(Point(None, None, None, made=made), p)))
+
     by = [names.index(name) for name in ("psi", "excess") if name in names]
     integrals = [Integral(_as_made, turning, tuple(by))]
     if stretch:
-        integrals.append(Integral(lambda p, made: 0.0 * p.R0, stretching, (0, names.index("excess"))))
+        rate, field = (widening, "psi") if programmed else (stretching, "excess")
+        integrals.append(Integral(lambda p, made: 0.0 * p.R0, rate, (0, names.index(field))))
     orders, angles = tuple(ORDERS[name] for name in fields), tuple(name in ANGLES for name in names)
     return Form(tuple(integrals), point, orders, angles)
 

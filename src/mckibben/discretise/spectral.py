@@ -41,6 +41,7 @@ class Line:
     give: bool = False  #: whether the fittings give way
     slide: bool = False  #: whether the chamber slides along the mesh
     dense: bool = False  #: whether it has twice the points, for kinks that lie between them
+    programmed: bool = False  #: whether the braid angle varies along the length
 
     @classmethod
     def of(cls, muscle: Muscle, size: int) -> "Line":
@@ -53,12 +54,13 @@ class Line:
         whole = len(muscle.end_radii or ()) == 2 or (profile is not None and not profile.mirrored)
         count, modes = (2 * size, "all") if whole else (size, "odd")
         slide = muscle.friction is not None and muscle.friction.chamber_coefficient is not None
-        return cls(count, str(muscle.ends), modes, muscle.braid.fibre.stretch, roll, give, slide)  # type: ignore[arg-type]
+        stretch, programmed = muscle.braid.fibre.stretch, profile is not None
+        return cls(count, str(muscle.ends), modes, stretch, roll, give, slide, programmed=programmed)  # type: ignore[arg-type]
 
     @property
     def form(self) -> Form:
         """What the local variables mean."""
-        return line_form(self.stretch, self.roll, self.slide, self.give, self.ends == "free")
+        return line_form(self.stretch, self.roll, self.slide, self.give, self.ends == "free", self.programmed)
 
     @property
     def points(self) -> int:

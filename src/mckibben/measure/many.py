@@ -12,7 +12,7 @@ from mckibben.compiled.kernel import kernel
 from mckibben.compiled.rows import filled
 from mckibben.discretise.fields import Placed
 from mckibben.measure.kink import Missed
-from mckibben.measure.read import Reading, read, stable, with_kinks
+from mckibben.measure.read import Reading, read, stable, with_kinks, with_unresolved
 from mckibben.solver.batch import moved, newton
 from mckibben.solver.problem import Basis
 from mckibben.solver.system import Local, Unknowns, assemble, localise, residual
@@ -28,7 +28,7 @@ class Appraised(NamedTuple):
     length: Bool[Array, ""]  #: stable with the length held
     force: Bool[Array, ""]  #: stable with the force held
     antisymmetric: Bool[Array, ""]  #: stable against antisymmetric disturbances
-    missed: Missed | None  #: what kinks of a chamber with a gap add to the error
+    missed: Missed | None  #: what kinks of a chamber with a gap add to the error, and a varying angle
 
 
 @kernel
@@ -36,15 +36,16 @@ def appraised(basis: Basis, on: Placed, states: Unknowns, count: Int[Array, ""])
     """The first `count` states (n, batch, ...) of every muscle, as they are; leaves lead with (n, batch), and are zero
     beyond."""
 
-    def one(on: Placed, state: Unknowns) -> tuple[Reading, Array, Local]:
+    def one(on: Placed, state: Unknowns) -> tuple[Reading, Array, Local, Array]:
         local = localise(basis, on, state)
         s = assemble(basis, on, local, len(state.loads), together=True)
         seen = with_kinks(read(basis, on, state), basis, on, state, s)
-        return seen, residual(s, state.loads), local
+        return seen, residual(s, state.loads), local, s.values
 
     def at(k: Array) -> Appraised:
         some = jax.tree.map(lambda rows: rows[k], states)
-        seen, off, local = jax.vmap(one)(on, some)
+        seen, off, local, values = jax.vmap(one)(on, some)
+        seen = with_unresolved(seen, basis, on, some, values, each=0)
         under = stable(basis, on, local, some.loads.shape[1], jnp.array(False), each=0, together=True)
         numbers = seen.numbers | {
             "peak_fibre_tension": seen.fields["fibre_tension"].max(axis=1),

@@ -16,8 +16,10 @@ from mckibben.compiled.arrays import Array
 from mckibben.compiled.kernel import kernel
 from mckibben.compiled.rows import filled
 from mckibben.discretise.fields import Placed, place, points_at, states
+from mckibben.discretise.spectral import Line
 from mckibben.measure.kink import Missed, missed
 from mckibben.measure.peak import peak
+from mckibben.measure.unresolved import asks_for_step, unresolved_all
 from mckibben.model.angle import cos, radians, slope
 from mckibben.model.energy import fittings_density, lagrangian
 from mckibben.model.fibres import axial_density, fibre_densities
@@ -45,6 +47,7 @@ __all__ = [
     "read_many",
     "stable",
     "with_kinks",
+    "with_unresolved",
 ]
 
 ENERGIES = ("bending_1", "bending_2", "twist", "chamber")
@@ -61,7 +64,7 @@ class Reading(NamedTuple):
     largest_slope: Float[Array, ""]  #: of the meridian, |psi| [rad]
     conserved_variation: Float[Array, ""]
     coefficient_tail: Float[Array, ""]
-    missed: Missed | None = None  #: what kinks of a chamber with a gap add to the error
+    missed: Missed | None = None  #: what kinks of a chamber with a gap add to the error, and a varying angle
 
 
 def nodes(basis: Basis) -> int:
@@ -127,6 +130,21 @@ def with_kinks(reading: Reading, basis: Basis, on: Placed, state: Unknowns, s: S
     if not leaves(on.p):
         return reading
     return reading._replace(missed=missed(basis, on, state, s, basis.sampling(nodes(basis))))
+
+
+def with_unresolved(
+    reading: Reading, basis: Basis, on: Placed, states: Unknowns, values: Array, each: int | None = None
+) -> Reading:
+    """Readings of n states with what the unknowns do not resolve, where nothing else tells it.
+
+    `values` (n, l) are those of the equations; `on` is one muscle, or with each=0 n of them.
+    """
+    if states.memory is not None or not asks_for_step(basis, on.p):
+        return reading
+    assert isinstance(basis, Line)
+    found = unresolved_all(basis, on, states, values, each)
+    both = found if reading.missed is None else jax.tree.map(jnp.add, found, reading.missed)
+    return reading._replace(missed=both)
 
 
 def _densities(at: Point, p: Parameters, memory: Any = None) -> dict[str, Number]:
@@ -286,21 +304,23 @@ def read_many(
     on, n, loads = place(basis, p, b), len(states.u), states.loads.shape[1]
     size = min(n, AT_ONCE, batch_size(basis.unknowns))
 
-    def one(state: Unknowns, kept: Any) -> tuple[Reading, Array, Local]:
+    def one(state: Unknowns, kept: Any) -> tuple[Reading, Array, Local, Array]:
         local = localise(basis, on, state)
         s = assemble(basis, on, local, len(state.loads))
         seen = with_kinks(read(basis, on, state, kept), basis, on, state, s)
-        return seen, residual(s, state.loads), local
+        return seen, residual(s, state.loads), local, s.values
 
     def some(k: Array) -> tuple[Reading, Stable, Array]:
         rows = jax.tree.map(lambda rows: jax.lax.dynamic_slice_in_dim(rows, k * size, size), (states, kept))
-        seen, off, local = jax.vmap(one)(*rows)
+        seen, off, local, values = jax.vmap(one)(*rows)
+        seen = with_unresolved(seen, basis, on, rows[0], values)
         return seen, stable(basis, on, local, loads, volume), off
 
     found: tuple[Reading, Stable, Array]
     if n == 1:  # without the loop and the mapping it is compiled in two thirds of the time
         alone = one(*jax.tree.map(lambda row: row[0], (states, kept)))
-        seen, off, local = jax.tree.map(lambda value: jnp.asarray(value)[None], alone)
+        seen, off, local, values = jax.tree.map(lambda value: jnp.asarray(value)[None], alone)
+        seen = with_unresolved(seen, basis, on, states, values)
         found = seen, stable(basis, on, local, loads, volume), off
     else:
         found = filled(some, (count + size - 1) // size, n)

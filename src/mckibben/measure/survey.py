@@ -9,6 +9,7 @@ import numpy as np
 from mckibben.measure.judge import Judgement, judge, shape_of
 from mckibben.measure.meridian import meridian
 from mckibben.measure.read import NODES, Reading, Stable, read_many
+from mckibben.measure.unresolved import asks_for_step
 from mckibben.model.extension import longest_of
 from mckibben.model.parameters import Parameters
 from mckibben.results.verdict import Modes, Shape
@@ -28,6 +29,7 @@ __all__ = [
     "padded_states",
     "prepare",
     "survey",
+    "unresolved_bound",
 ]
 
 ROUNDING = 1e-11
@@ -141,23 +143,31 @@ def survey(
         shapes[k] = shape_of(*line)
     verdicts = [judge(mode, shape, "length" in held) for mode, shape in zip(modes, shapes, strict=True)]
     variation, tail = reading.conserved_variation, reading.coefficient_tail
-    near = by_tail_alone(problem, reading.numbers["length"]) | (kept is not None)  # memory: nothing is conserved
+    estimate = _bound(problem, reading, held, kept is not None)
     numbers = reading.numbers | {
-        "error_estimate": error_bound(variation, tail, near, _kinks(reading, held)), "conserved_variation": variation,
+        "error_estimate": estimate, "conserved_variation": variation,
         "coefficient_tail": tail,
     }  # fmt: skip
     return Survey(problem, u, loads, numbers, reading.fields, residual, modes, verdicts)
 
 
-def _kinks(reading: Reading, held: tuple[Any, ...]) -> np.ndarray | float:
-    return 0.0 if reading.missed is None else np.asarray(reading.missed.under(held))
+def _bound(problem: Problem, reading: Reading, held: tuple[Any, ...], remembers: bool = False) -> np.ndarray:
+    """The error estimate; of states that remember a path nothing is conserved along the length."""
+    missed = 0.0 if reading.missed is None else np.asarray(reading.missed.under(held))
+    if asks_for_step(problem.basis, problem.p) and not remembers:
+        return unresolved_bound(missed)
+    near = nearly_straight(problem, reading.numbers["length"]) | (problem.p.profile is not None) | remembers
+    return error_bound(reading.conserved_variation, reading.coefficient_tail, near, missed)
 
 
 def errors(problem: Problem, u: np.ndarray, loads: np.ndarray, held: tuple[Any, ...]) -> np.ndarray:
     """Estimated relative error of force and length of states u (n, m) under loads (n, l), found with `held`."""
-    reading = read_states(problem, u, loads, False)[0]
-    near = by_tail_alone(problem, reading.numbers["length"])
-    return error_bound(reading.conserved_variation, reading.coefficient_tail, near, _kinks(reading, held))
+    return _bound(problem, read_states(problem, u, loads, False)[0], held)
+
+
+def unresolved_bound(missed: np.ndarray | float) -> np.ndarray:
+    """Of what asks for a step: what `measure.unresolved` found, and kinks."""
+    return np.maximum(missed, ROUNDING)
 
 
 def error_bound(
@@ -177,11 +187,6 @@ def error_bound(
     by_tail = coefficient_tail**1.5
     usual = np.minimum(3.0 * conserved_variation, by_tail)
     return np.maximum(np.where(stretched, 2.0 * by_tail, usual), ROUNDING) + kinks
-
-
-def by_tail_alone(problem: Problem, length: np.ndarray) -> np.ndarray:
-    """Of which states of lengths [m] the conserved quantity tells nothing; in a programmed braid there is none."""
-    return nearly_straight(problem, length) | (problem.p.profile is not None)
 
 
 def nearly_straight(problem: Problem, length: np.ndarray) -> np.ndarray:

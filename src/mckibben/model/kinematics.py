@@ -13,6 +13,7 @@ __all__ = [
     "facing",
     "fibre_strains",
     "height_rate",
+    "made_angle",
     "meridian_stretch",
     "natural_strains",
     "radius",

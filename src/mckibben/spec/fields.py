@@ -27,6 +27,7 @@ __all__ = [
     "part",
     "quantities",
     "quantity",
+    "read_count",
     "read_quantity",
     "spec",
     "spec_classes",
@@ -128,7 +129,8 @@ def quantities(
     )  # fmt: skip
 
 
-def _read_count(value: Any, field: str, declared: Declared) -> Number:
+def read_count(value: Any, field: str, declared: Declared) -> Number:
+    """The whole number that a user gave for `declared`, checked against its range."""
     if is_traced(value):
         return value
     try:
@@ -151,11 +153,12 @@ def count(
     advice: str = "",
     default: Any = attrs.NOTHING,
     static: bool = False,
+    read: Callable[[Any, str, Declared], Number] = read_count,
 ) -> Any:
     """A whole number, such as that of the fibres. With `static` it cannot be varied (such as the number of states)."""
     return declare(
         Declared(
-            kind="count", read=_read_count, meaning=meaning, low=low, high=high, source=source, advice=advice,
+            kind="count", read=read, meaning=meaning, low=low, high=high, source=source, advice=advice,
             default=default, static=static,
         )
     )  # fmt: skip

@@ -12,12 +12,12 @@ from mckibben.spec.angle import AngleFrom, between, both_ways, from_parallels, t
 from mckibben.spec.angle_profile import AngleProfile, check_angles, check_profile
 from mckibben.spec.chamber import Chamber
 from mckibben.spec.change import changed_muscle
-from mckibben.spec.declared import Reads, walk
+from mckibben.spec.declared import Declared, Reads, walk
 from mckibben.spec.end_radii import check_end_radii, read_radii
 from mckibben.spec.ends import Ends
 from mckibben.spec.errors import SpecError, nearest
 from mckibben.spec.fibre import Fibre
-from mckibben.spec.fields import choice, count, part, quantities, quantity, spec, words
+from mckibben.spec.fields import choice, count, part, quantities, quantity, read_count, spec, words
 from mckibben.spec.fittings import Fittings
 from mckibben.spec.friction import Friction, check_friction
 from mckibben.spec.limits import check_angle, check_muscle
@@ -40,6 +40,15 @@ class Joint(StrEnum):
 
     HINGE = "hinge"
     PIN = "pin"
+
+
+def _read_fibres(value: Any, field: str, declared: Declared) -> Number:
+    """One number all along: a braid of continuous fibres keeps theirs (theory page, a programmed braid)."""
+    if callable(value) or isinstance(value, (dict, list, tuple)) or getattr(value, "ndim", 0) > 0:
+        said = "must be one whole number all along the braid: one that ended within it would hold nothing"
+        advice = "vary the angle instead, by braid.angle_profile: where it is steeper there are fewer crossings"
+        raise SpecError(field, value, said, advice)
+    return read_count(value, field, declared)
 
 
 @spec("braid")
@@ -88,8 +97,9 @@ class Braid:
         doubt=(math.pi / 2.0, 90.0),
     )  # fmt: skip
     fibres: Reads[int] = count(
-        meaning="number N of fibres, both hands together; even", low=2, high=100_000, advice="count both hands"
-    )
+        meaning="number N of fibres, both hands together; even", low=2, high=100_000, advice="count both hands",
+        read=_read_fibres,
+    )  # fmt: skip
     fibre: Fibre = part(Fibre, meaning="what one fibre is")
     joint: Reads[Joint] = choice(
         Joint, meaning="what holds fibres together where they cross", default=Joint.HINGE, quiet=True,

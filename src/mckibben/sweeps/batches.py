@@ -15,7 +15,8 @@ import numpy as np
 
 from mckibben.discretise.spectral import Line
 from mckibben.measure.many import Appraised, appraised
-from mckibben.measure.survey import PLAIN_SLOPE, STRETCHED, error_bound
+from mckibben.measure.survey import PLAIN_SLOPE, STRETCHED, error_bound, unresolved_bound
+from mckibben.measure.unresolved import asks_for_step
 from mckibben.solver.bench import sizes_for
 from mckibben.solver.system import Unknowns
 from mckibben.sweeps.groups import Group, surely_reached
@@ -111,10 +112,13 @@ def _arranged(paths: Paths, found: Appraised, some: np.ndarray, good: np.ndarray
 
     seen = {name: by_design(values) for name, values in found.numbers.items()}
     group = paths.group.take(where)
-    stretched = seen["length"] > STRETCHED * surely_reached(group.p, group.line.ends)[:, None]
-    stretched = stretched | (group.p.profile is not None)  # nothing is conserved along such a braid
-    kinks = 0.0 if found.missed is None else by_design(found.missed.under(group.held))
-    seen["error_estimate"] = error_bound(seen["conserved_variation"], seen["coefficient_tail"], stretched, kinks)
+    missed = 0.0 if found.missed is None else by_design(found.missed.under(group.held))
+    if not asks_for_step(group.line, group.p):
+        stretched = seen["length"] > STRETCHED * surely_reached(group.p, group.line.ends)[:, None]
+        bound = error_bound(seen["conserved_variation"], seen["coefficient_tail"], stretched, missed)
+    else:
+        bound = unresolved_bound(missed)
+    seen["error_estimate"] = bound
     loads, slope, sideways = (by_design(rows) for rows in (found.force, found.largest_slope, found.antisymmetric))
     plain = sideways & (slope < PLAIN_SLOPE) & (loads | (paths.group.held[0] == "length"))
     state = Unknowns(in_order(paths.state.u[where, :n]), in_order(paths.state.loads[where, :n]))
