@@ -82,10 +82,11 @@ class Watched:
         assert self.foreign == []
 
 
-def axe(tab: Any) -> list[str]:
-    """What the accessibility checker finds serious."""
+def axe(tab: Any, part: str = "") -> list[str]:
+    """What the accessibility checker finds serious, on all of the page or in one part of it, a selector."""
     tab.evaluate((Path(__file__).parent.parent / "page" / "axe.min.js").read_text(encoding="utf-8"))
-    found = tab.evaluate("axe.run(document, {resultTypes: ['violations']})")
+    root = f"document.querySelector('{part}')" if part else "document"
+    found = tab.evaluate(f"axe.run({root}, {{resultTypes: ['violations']}})")
     return [
         f"{one['id']}: {one['help']}: {node['html'][:120]}"
         for one in found["violations"]

@@ -34,6 +34,7 @@ export class Form {
     for (const one of [...told.choices].reverse()) {
       groups.get(one.group).unshift(this.choice(one));
     }
+    this.left = null;
     this.law = el("p", { class: "quiet" });
     if (groups.get("Rubber").length) groups.get("Rubber").push(this.law);
     this.root.replaceChildren(...[...groups].filter(([, controls]) => controls.length).map(([name, controls]) =>
@@ -41,11 +42,17 @@ export class Form {
     at("about").replaceChildren(el("strong", { text: told.name }), told.about ? `: ${told.about}. ` : ". ", told.remark);
     const again = focused.of && this.root.querySelector(`[data-of="${CSS.escape(focused.of)}"][data-as="${focused.as}"]`);
     if (again) again.focus();
-    const assumed = told.assumed.map((one) => el("li", {}, el("code", { text: one.name }), ` ${one.meaning}`));
-    at("assumed").hidden = !assumed.length;
-    at("assumed").querySelector("ul").replaceChildren(...assumed);
-    at("assumed").querySelector("summary").textContent = `${assumed.length} values are assumed, not measured`;
     this.show();
+  }
+
+  assumed(left) {
+    const key = left.map(({ name }) => name).join();
+    if (this.left === key) return; // most of the time a slider only moves on
+    this.left = key;
+    const box = at("assumed");
+    box.hidden = !left.length;
+    box.querySelector("ul").replaceChildren(...left.map((one) => el("li", {}, el("code", { text: one.name }), ` ${one.meaning}`)));
+    box.querySelector("summary").textContent = `${left.length} values are assumed, not measured`;
   }
 
   choice(one) {
@@ -68,13 +75,22 @@ export class Form {
   }
 
   show() {
-    for (const one of this.store.now.told.sliders) {
+    const { told, changes } = this.store.now;
+    const given = new Set(Object.keys(changes).map(field)); // what was given is assumed no longer
+    for (const one of told.sliders) {
       const slider = this.sliders.get(one.name);
       slider.set(this.store.shown(one));
-      slider.root.classList.toggle("changed", one.name in this.store.now.changes);
+      slider.root.classList.toggle("changed", one.name in changes);
+      slider.root.querySelector(".mark")?.toggleAttribute("hidden", given.has(field(one.name)));
     }
+    this.assumed(told.assumed.filter(({ name }) => !given.has(name)));
     for (const { select, one } of this.selects.values()) {
       select.selectedIndex = one.options.findIndex(([option]) => option === one.value);
     }
   }
+}
+
+// The field that a number is of: of one of a list that of the list.
+function field(name) {
+  return name.split("[")[0];
 }

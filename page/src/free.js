@@ -4,7 +4,7 @@ import { el } from "./dom.js";
 import { plain } from "./format.js";
 import { dialog } from "./notices.js";
 
-const USUAL = ["braid.angle", "chamber.law.c1", "chamber.law.mu", "chamber.law.E"];
+const USUAL = ["braid.angle", ...["c1", "mu", "mu[0]", "E", "shore", "axial_stiffness"].map((name) => `chamber.law.${name}`)];
 
 export class Free {
   constructor(store) {
