@@ -18,6 +18,8 @@ from mckibben.spec import Path as Held
 from mckibben.sweeps.plan import plan
 from mckibben.units import UnitError, to_si
 
+pytestmark = pytest.mark.experiments
+
 PAPER = mk.presets.paper()
 TEST = mk.Isometric(length="115 mm", pressure="0 to 1 bar", points=3)
 MARK = b"\xef\xbb\xbf"

@@ -23,7 +23,7 @@ from mckibben.solver.find import find
 from mckibben.solver.held import Held
 from mckibben.spec.text import muscle_from_mapping, to_mapping
 
-pytestmark = pytest.mark.model
+pytestmark = pytest.mark.effects
 
 K = 5.0
 PAPER = mk.presets.paper()

@@ -22,6 +22,8 @@ from mckibben.discretise.spectral import Line
 from mckibben.model.chamber import mooney_rivlin
 from mckibben.model.parameters import Parameters, parameters
 
+pytestmark = pytest.mark.compiled
+
 ROOT = Path(__file__).parent.parent
 KEYS = """
 import numpy as np, jax, mckibben as mk

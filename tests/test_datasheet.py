@@ -22,7 +22,7 @@ from mckibben.sheet.pictures import curves, drawing, svg
 from mckibben.sheet.words import Page, page
 from mckibben.units import show
 
-pytestmark = pytest.mark.view
+pytestmark = pytest.mark.sheet
 
 PAPER = mk.presets.paper()
 PRESSURES = (5e4, 1e5)

@@ -18,7 +18,7 @@ from mckibben.designing.search import scatter
 from mckibben.designing.states import states_at
 from mckibben.designing.tried import Tried
 
-pytestmark = pytest.mark.sweeps
+pytestmark = pytest.mark.designing
 
 PET, RUBBER = "1380 kg/m^3", "1100 kg/m^3"
 AT = {"pressure": "1 bar"}

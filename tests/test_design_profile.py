@@ -16,7 +16,7 @@ from mckibben.designing.states import states_at
 from mckibben.measure.meridian import radii_at
 from mckibben.spec.change import changed_muscle
 
-pytestmark = pytest.mark.sweeps
+pytestmark = pytest.mark.designing
 
 AT = {"pressure": "1 bar"}
 SHARES = [0.0, 0.1, 0.35, 0.5, 0.8]

@@ -10,6 +10,8 @@ import pytest
 
 import mckibben as mk
 
+pytestmark = pytest.mark.docs
+
 PRESETS = ("about", "get", "names", "paper", "reference", "sources")
 NAMES = (*mk.__all__, *(f"presets.{name}" for name in PRESETS))
 OPTIONS = doctest.ELLIPSIS | doctest.NORMALIZE_WHITESPACE

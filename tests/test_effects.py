@@ -14,7 +14,7 @@ import mckibben as mk
 from mckibben.app.cli import app
 from mckibben.experiments import effects as experiment
 
-pytestmark = pytest.mark.experiments
+pytestmark = pytest.mark.effects
 
 HELD = {"length": "115 mm", "pressure": "1 bar"}
 

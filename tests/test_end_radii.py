@@ -24,7 +24,7 @@ from mckibben.solver.held import Held
 from mckibben.spec.change import changed_muscle
 from mckibben.spec.text import muscle_from_mapping, to_mapping
 
-pytestmark = pytest.mark.model
+pytestmark = pytest.mark.effects
 
 R0, H0, THETA0 = 12.5e-3, 85e-3, math.radians(37.0)
 UNIT = R0 / math.cos(THETA0)

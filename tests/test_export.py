@@ -29,7 +29,7 @@ from mckibben.exports.affine import affine
 from mckibben.potential.table import variables_of
 from mckibben.spec.text import to_toml
 
-pytestmark = pytest.mark.charts
+pytestmark = pytest.mark.exports
 
 LENGTHS, LAST = (0.06, 0.115), 3e5
 THREAD, TURNS = 0.1412, 1.06

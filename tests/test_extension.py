@@ -17,7 +17,7 @@ from mckibben import spec
 from mckibben.model import elliptic
 from mckibben.model.extension import full_extension
 
-pytestmark = pytest.mark.model
+pytestmark = pytest.mark.effects
 
 angles = between(math.radians(5.0), math.radians(85.0))
 

@@ -22,7 +22,7 @@ from mckibben.film.picture import SCALE, Picture
 from mckibben.spec.errors import SpecError
 from mckibben.view import moving
 
-pytestmark = pytest.mark.view
+pytestmark = pytest.mark.film
 
 M = mk.presets.paper()
 SIZE = (600, 340)

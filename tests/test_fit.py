@@ -13,7 +13,7 @@ from mckibben.fitting.misfit import Misfit, Points
 from mckibben.fitting.search import least
 from mckibben.fitting.uncertain import members
 
-pytestmark = pytest.mark.experiments
+pytestmark = pytest.mark.fitting
 
 MUSCLE = mk.presets.paper()
 FREE = {"braid.angle": "35 deg to 39 deg", "chamber.law.c1": "2 kPa to 40 kPa"}

@@ -11,7 +11,7 @@ from mckibben.fitting.free import free_numbers
 from mckibben.fitting.misfit import Points
 from mckibben.fitting.paths import PathMisfit
 
-pytestmark = pytest.mark.experiments
+pytestmark = pytest.mark.fitting
 
 MUSCLE = mk.presets.paper().replace("friction", mk.Friction(constant="0.02 N mm"))
 # At 0.1 MPa, from 85 mm: length [mm], force [N], by a code of its own (as in test_friction.py).

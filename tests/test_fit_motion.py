@@ -13,7 +13,7 @@ import mckibben as mk
 from mckibben.motionfits.fit import free_of_rig
 from mckibben.motionfits.misfit import MotionMisfit
 
-pytestmark = pytest.mark.motion
+pytestmark = pytest.mark.motionfits
 
 CHART = Cylinder(k=500.0)
 RIG = mk.Rig(

@@ -15,7 +15,7 @@ from mckibben.fitting.free import Free
 from mckibben.fitting.misfit import Seen
 from mckibben.fitting.sample import Drawn, drawn
 
-pytestmark = pytest.mark.experiments
+pytestmark = pytest.mark.fitting
 
 RANDOM = np.random.default_rng(5)
 SLOPES = RANDOM.normal(size=(12, 2)) * [30.0, 8.0]

@@ -9,7 +9,7 @@ from numpy.testing import assert_allclose
 
 import mckibben as mk
 
-pytestmark = pytest.mark.measure
+pytestmark = pytest.mark.effects
 
 C = 1e-5
 """Compliance [m/N]: that of the theory page's Festo membrane, 0.0101 mm/N, rounded."""

@@ -15,7 +15,7 @@ from mckibben.model.parameters import parameters
 from mckibben.model.point import Point
 from mckibben.spec.text import from_mapping, to_mapping
 
-pytestmark = pytest.mark.measure
+pytestmark = pytest.mark.effects
 
 RADIUS, LENGTH, ANGLE, FIBRES = 12.5e-3, 85e-3, np.radians(37.0), 56
 

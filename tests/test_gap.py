@@ -23,7 +23,7 @@ from mckibben.solver.find import equilibrium, find
 from mckibben.solver.held import Held
 from mckibben.solver.problem import Problem
 
-pytestmark = pytest.mark.model
+pytestmark = pytest.mark.effects
 
 C1, OUTER, INNER = 150e3, 20e-3, 18e-3
 PAPER = mk.presets.paper()

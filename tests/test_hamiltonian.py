@@ -25,7 +25,7 @@ from mckibben.model.kinematics import angle_rate, height_rate
 from mckibben.model.parameters import Parameters, parameters
 from mckibben.model.point import Point
 
-pytestmark = pytest.mark.solver
+pytestmark = pytest.mark.reference
 
 TOLERANCE = 1e-6
 """Of the collocation's relative residuals; the force is then good to 1e-9 or better."""

@@ -28,6 +28,8 @@ from mckibben.solver.find import find
 from mckibben.solver.held import Held
 from mckibben.solver.problem import balance, curvature, setting
 
+pytestmark = pytest.mark.compiled
+
 OWN = 5
 """Unknowns that no other test has compiled before."""
 CASE = """

@@ -235,3 +235,14 @@ def test_the_checker_sees(tmp_path: Path, file: str, text: str, complaint: str |
 def test_the_checker_sees_what_is_wrong_with_the_page(tmp_path: Path, line: str, complaint: str) -> None:
     page = SMALL.replace("\n\n| room", f"\n{line}\n\n| room")
     assert complaint in violations(small_house(tmp_path, {}), page)
+
+
+def test_every_check_has_a_marker() -> None:
+    declared = (ROOT / "pyproject.toml").read_text(encoding="utf-8").partition("\nmarkers = [")[2].partition("\n]")[0]
+    marks = "|".join(re.findall(r'^    "(\w+): ', declared, re.MULTILINE))
+    assert marks.count("|") > 20
+    for file in sorted((ROOT / "tests").glob("test_*.py")):
+        text = file.read_text(encoding="utf-8")
+        whole = re.search(rf"^pytestmark = \[?\s*pytest\.mark\.(?:{marks})\b", text, re.MULTILINE)
+        single = len(re.findall(rf"^@pytest\.mark\.(?:{marks})\b", text, re.MULTILINE))
+        assert whole or single == len(re.findall(r"^def test_", text, re.MULTILINE)), file.name

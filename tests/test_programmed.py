@@ -31,7 +31,7 @@ from mckibben.spec.winding import fibre_length, turned
 from mckibben.sweeps.groups import grouped
 from mckibben.view.tube import Tube
 
-pytestmark = pytest.mark.model
+pytestmark = pytest.mark.effects
 
 UNIFORM = mk.presets.paper().replace("braid.fibre.stretch", True)
 R0, H0, H, P = 12.5e-3, 85e-3, 0.105, 1e5

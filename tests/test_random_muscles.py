@@ -8,7 +8,7 @@ import pytest
 
 import mckibben as mk
 
-pytestmark = pytest.mark.solver
+pytestmark = pytest.mark.reference
 
 FILE = Path(__file__).parent / "data" / "random_targets.json"
 TARGETS = json.loads(FILE.read_text(encoding="utf-8"))["targets"]

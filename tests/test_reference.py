@@ -7,7 +7,7 @@ from cases import CASES, held, muscle, relative_error
 
 import mckibben as mk
 
-pytestmark = pytest.mark.spec
+pytestmark = pytest.mark.reference
 
 REFERENCE = pytest.mark.parametrize("case", CASES["reference"], ids=lambda case: case["name"])
 

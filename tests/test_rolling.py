@@ -6,7 +6,7 @@ from numpy.testing import assert_allclose
 
 import mckibben as mk
 
-pytestmark = pytest.mark.measure
+pytestmark = pytest.mark.effects
 
 # Bare braid without pressure: F (8/N)/d^4 [N/mm^4] of the model with roll by an independent code, to the digits given,
 # and of a finite-element model of 56 rods with spherical joints (theory page).

@@ -20,6 +20,8 @@ from mckibben.experiments import limits
 from mckibben.results.rows import rows
 from mckibben.spec.text import to_toml
 
+pytestmark = pytest.mark.view
+
 PAPER = mk.presets.paper()
 STRONG = PAPER.replace("braid.fibre.breaking_force", "20 N")
 CURVE = mk.Isometric(length="115 mm", pressure="0 to 1 bar", points=3)

@@ -16,7 +16,7 @@ from mckibben.model.point import Point
 from mckibben.model.wall import chamber_density, chamber_pull
 from mckibben.spec.text import from_mapping, to_mapping
 
-pytestmark = pytest.mark.measure
+pytestmark = pytest.mark.effects
 
 STIFF = 2.0
 BELLOWS = mk.Chamber(law=mk.Bellows(axial_stiffness=STIFF), lies="inside")

@@ -12,7 +12,7 @@ from mckibben.model.fibres import fibre_densities
 from mckibben.model.parameters import parameters
 from mckibben.model.point import Point
 
-pytestmark = pytest.mark.model
+pytestmark = pytest.mark.effects
 
 HELD: dict[str, Any] = {"length": "55 mm", "pressure": "0.5 bar"}
 

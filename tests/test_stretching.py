@@ -15,7 +15,7 @@ from mckibben.model.axial import axial_energy, axial_tension
 from mckibben.model.parameters import parameters
 from mckibben.spec.text import muscle_from_mapping, to_mapping, to_toml
 
-pytestmark = pytest.mark.measure
+pytestmark = pytest.mark.effects
 
 PET = 147.26215563702155
 """EA [N] of the paper's fibres as assumed: E pi d^2/4."""

@@ -12,7 +12,7 @@ import mckibben as mk
 
 # such soft rubber at 1 bar would bulge through the sleeve: a caution, and no matter here
 pytestmark = [
-    pytest.mark.experiments,
+    pytest.mark.effects,
     pytest.mark.filterwarnings("ignore:.*bulges by half a circle:mckibben.MuscleWarning"),
 ]
 

@@ -17,7 +17,7 @@ from mckibben.scatter.given import scattering
 from mckibben.sweeps import chunk
 from mckibben.sweeps.plan import plan
 
-pytestmark = pytest.mark.sweeps
+pytestmark = pytest.mark.scatter
 
 PAPER = mk.presets.paper()
 TEST = mk.Isometric(length="115 mm", pressure="1 bar")

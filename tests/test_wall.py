@@ -16,7 +16,7 @@ from mckibben.model.parameters import Parameters, parameters
 from mckibben.model.point import Point
 from mckibben.model.wall import chamber_density, chamber_pull, contact_pressure, mean_density, touching_pressure
 
-pytestmark = pytest.mark.model
+pytestmark = pytest.mark.effects
 
 R0, H0 = 5e-3, 0.1
 RUBBER = mk.MooneyRivlin(c1="0.1 MPa", c2="0.03 MPa")
