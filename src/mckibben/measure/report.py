@@ -134,7 +134,7 @@ def _fields(parts: list[Part], names: list[str]) -> dict[str, np.ndarray]:
             for name, values in _at(part, one).items():
                 room[name][i] = values
         rooms.append(room)
-    return {name: np.concatenate([room[name] for room in rooms]) for name in names}
+    return rooms[0] if len(rooms) == 1 else {name: np.concatenate([room[name] for room in rooms]) for name in names}
 
 
 def _at(part: Part, one: Sought) -> dict[str, np.ndarray]:
