@@ -3,6 +3,7 @@
 import ctypes
 import importlib.util
 import json
+import re
 import shutil
 import subprocess
 from pathlib import Path
@@ -20,6 +21,7 @@ from mckibben.charts.edges import narrowed
 from mckibben.charts.sample import KEPT, Samples
 from mckibben.charts.series import Edges, fitted
 from mckibben.potential.evaluate import Table, Values, in_blocks
+from mckibben.potential.grid import COLUMNS
 
 pytestmark = pytest.mark.charts
 
@@ -279,6 +281,24 @@ def test_tables_for_other_programs(chart: mk.Chart, tmp_path: Path) -> None:
     np.testing.assert_array_equal(told["volume"], held["volume"])
     assert told["errors"]["force"] == chart.force_error
     assert any("assumed" in line for line in told["notes"])
+
+
+def test_tables_for_modelica(chart: mk.Chart, tmp_path: Path) -> None:
+    """As the standard library reads them: "#1", comments, "double name(rows,columns)", and as many numbers."""
+    text = mk.export(chart, tmp_path / "map.txt", points=(12, 7)).read_text()
+    assert text.startswith("#1\n")
+    body = "\n".join(line.partition("#")[0] for line in text.splitlines())
+    found = {}
+    for part in body.split("double ")[1:]:
+        head, _, numbers = part.partition("\n")
+        name, rows, columns = re.fullmatch(r"(\w+)\((\d+),(\d+)\) *", head).groups()
+        found[name] = np.array(numbers.split(), float).reshape(int(rows), int(columns))
+    assert list(found) == list(COLUMNS)[2:]
+    h, P = found["force"][1:, 0], found["force"][0, 1:]
+    assert (len(h), len(P)) == (12, 7)
+    np.testing.assert_array_equal(found["force"][1:, 1:], chart.force(h[:, None], P))
+    np.testing.assert_array_equal(found["largest_radius"][1:, 1:], chart.largest_radius(h[:, None], P))
+    assert any("assumed" in line for line in text.splitlines() if line.startswith("# "))
 
 
 def test_pictures_and_notebooks_say_the_error(chart: mk.Chart) -> None:

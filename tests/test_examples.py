@@ -127,6 +127,37 @@ def test_gap(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.Cap
     assert (tmp_path / "out" / "gap.png").stat().st_size > 10_000
 
 
+def test_pinned_crossings(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]) -> None:
+    rows = printed("pinned_crossings.py", tmp_path, monkeypatch, capsys)
+    assert rows[0] == pytest.approx([33.91, 120.0, -8.97, 60.0], abs=0.011)
+    assert rows[1] == pytest.approx([27.26, 120.0, -7.77, 60.0], abs=0.011)
+    assert rows[2] == pytest.approx([33.4], abs=0.11)
+    assert (tmp_path / "out" / "pinned_crossings.png").stat().st_size > 10_000
+
+
+def test_soft_fittings(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]) -> None:
+    with warnings.catch_warnings():
+        rows = printed("soft_fittings.py", tmp_path, monkeypatch, capsys)
+    assert rows[0][::2] == [499.0] * 5
+    assert rows[1][1::2] == pytest.approx([364.0, 403.0, 433.0, 455.0, 473.0], abs=1.1)  # after the compliance
+    assert (tmp_path / "out" / "soft_fittings.png").stat().st_size > 10_000
+
+
+def test_stiffening_fibres(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]) -> None:
+    rows = printed("stiffening_fibres.py", tmp_path, monkeypatch, capsys)
+    assert rows[0] == pytest.approx([54.49, 115.0, -22.12, 60.0], abs=0.011)
+    assert rows[2][-4:] == pytest.approx([57.57, 115.0, -23.02, 60.0], abs=0.011)
+    assert (tmp_path / "out" / "stiffening_fibres.png").stat().st_size > 10_000
+
+
+def test_sliding_chamber(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]) -> None:
+    rows = printed("sliding_chamber.py", tmp_path, monkeypatch, capsys)
+    assert rows[0] == pytest.approx([0.0, 4.122, 3.739], abs=HALF_A_DIGIT)
+    assert rows[3] == pytest.approx([1.0, 62.562, 62.395], abs=6e-3)  # at the tolerance of 1e-2
+    assert rows[4] == pytest.approx([0.086], abs=1.1e-3)
+    assert (tmp_path / "out" / "sliding_chamber.png").stat().st_size > 10_000
+
+
 def test_programmed_braid(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]) -> None:
     rows = printed("programmed_braid.py", tmp_path, monkeypatch, capsys)
     assert rows[0] == pytest.approx([50.0, 52.5, 44.4], abs=0.06)

@@ -32,7 +32,7 @@ def export(
             "--output",
             "-o",
             metavar="FILE",
-            help="C (.h), Python (.py), FMI (.fmu), MuJoCo (.xml, .c), or tables: .csv, .mat, .json",
+            help="C (.h), Python (.py), FMI (.fmu), MuJoCo (.xml, .c), or tables: .csv, .mat, .json, Modelica's .txt",
         ),
     ],
     length: Annotated[str | None, typer.Option(metavar="LENGTHS", help='of a muscle: "60 mm to 115 mm"')] = None,

@@ -12,7 +12,7 @@ from mckibben.charts.chart import chart
 from mckibben.exports.compiler import compiler
 from mckibben.exports.fmu import as_fmu
 from mckibben.exports.fmudescription import MAIN
-from mckibben.exports.lookup import as_json, as_mat
+from mckibben.exports.lookup import as_json, as_mat, as_modelica
 from mckibben.exports.mjcf import as_mjcf
 from mckibben.exports.mjplugin import as_plugin
 from mckibben.files.store import suffix_of
@@ -27,7 +27,7 @@ __all__ = ["FORMATS", "How", "export", "how"]
 
 FORMATS = {
     ".h": "C99: the map itself", ".py": "Python with NumPy alone: the map itself", ".csv": "a table",
-    ".mat": "tables for MATLAB and Simulink", ".json": "tables",
+    ".mat": "tables for MATLAB and Simulink", ".json": "tables", ".txt": "tables for Modelica",
     ".fmu": "FMI 2.0 or 3.0, for co-simulation: the map itself",
     ".xml": "MuJoCo: an affine actuator", ".c": "MuJoCo: a plugin with the map itself",
 }  # fmt: skip
@@ -53,6 +53,7 @@ _WRITERS: dict[str, Callable[[Chart, How], bytes | str]] = {
     ".csv": lambda made, how: table(made, *how.points),
     ".mat": lambda made, how: as_mat(made, *how.points),
     ".json": lambda made, how: as_json(made, *how.points),
+    ".txt": lambda made, how: as_modelica(made, *how.points),
     ".fmu": lambda made, how: as_fmu(made, how.name, how.mass, how.fmi),
     ".xml": lambda made, how: as_mjcf(made, how.name, how.mass),
     ".c": lambda made, how: as_plugin(made, how.name),
@@ -100,8 +101,8 @@ def export(
     """Write a map of a muscle for another program, by the ending of the file's name.
 
     `.h` is one C99 file and `.py` a module that needs NumPy alone: both are the map itself, outside of its range too.
-    `.mat` (MATLAB, with breakpoints as Simulink's look-up tables take them), `.json` and `.csv` are tables over even
-    lengths and pressures in SI units, with what must be known of them.
+    `.mat` (MATLAB, with breakpoints as Simulink's look-up tables take them), `.txt` (Modelica's CombiTable2Ds), `.json`
+    and `.csv` are tables over even lengths and pressures in SI units, with what must be known of them.
 
     `.fmu` is for co-simulation by FMI 2.0 or 3.0, in C, compiled here, its source inside: pressure and length in;
     force, volume, their slopes and the largest radius out. With a mass it moves: the command of a valve (ISO 6358) and
