@@ -10,7 +10,7 @@ import pytest
 import mckibben as mk
 from mckibben import spec
 
-pytestmark = pytest.mark.experiments
+pytestmark = pytest.mark.derivatives
 
 PAPER = mk.presets.paper()
 TEST = mk.Isometric(length="110 mm", pressure=[2e4, 1e5])

@@ -27,7 +27,7 @@ from mckibben.solver.newton import bordered
 from mckibben.solver.problem import Basis
 from mckibben.solver.system import Unknowns, system
 
-pytestmark = pytest.mark.experiments
+pytestmark = pytest.mark.derivatives
 
 PAPER, REFERENCE = mk.presets.paper(), mk.presets.reference()
 # Central differences, exact for polynomials of degree 6.
