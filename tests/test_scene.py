@@ -22,6 +22,7 @@ from mckibben.view.tube import Tube
 pytestmark = pytest.mark.view
 
 SMALL = (300, 200)
+ROOT = Path(__file__).parent.parent
 
 
 @pytest.fixture(scope="module")
@@ -217,6 +218,27 @@ def test_a_picture_from_the_command_line(pyvista, saved: Path, tmp_path: Path) -
     columns = np.flatnonzero(seen.any(axis=0))
     assert columns[0] + columns[-1] == pytest.approx(599, abs=4)  # the muscle is symmetric
     assert seen.sum(axis=0)[columns[5] : 150].mean() > seen.sum(axis=0)[280:320].mean()  # and has a waist
+
+
+def test_the_picture_has_the_structure_of_the_one_in_the_documentation(pyvista, tmp_path: Path) -> None:
+    """Blocks of 20 x 20 pixels of the same scene, in grey: drawn elsewhere, single pixels are others."""
+    with Image.open(ROOT / "docs" / "pictures" / "scene.png") as stored:
+        size, before = stored.size, blocks(stored)
+    state = mk.solve(mk.presets.paper(), length="115 mm", pressure="1 bar")
+    plotter = mk.scene(state, cut=True, ghost=True, off_screen=True)
+    with Image.fromarray(np.asarray(plotter.screenshot(return_img=True))) as drawn:
+        assert drawn.size[0] / drawn.size[1] == pytest.approx(size[0] / size[1], rel=0.01)
+        now = blocks(drawn.resize(size))
+    plotter.close()
+    likeness = np.corrcoef(before.ravel(), now.ravel())[0, 1]
+    turned = np.corrcoef(before.ravel(), now[:, ::-1].ravel())[0, 1]
+    assert likeness > 0.999 > 0.97 > turned
+
+
+def blocks(picture: Image.Image) -> np.ndarray:
+    """Means of blocks of 20 x 20 pixels, in grey."""
+    grey = picture.convert("L")
+    return np.asarray(grey.resize((grey.width // 20, grey.height // 20), Image.Resampling.BOX), float)
 
 
 def test_what_is_asked_for_changes_the_picture(pyvista, curve: Result) -> None:
