@@ -13,7 +13,7 @@ from mckibben import spec
 from mckibben.model.cylinder import cylinder_force
 from mckibben.model.parameters import parameters
 
-pytestmark = pytest.mark.model
+pytestmark = pytest.mark.derivatives
 
 PAPER = mk.presets.paper()
 LAWS = (
