@@ -6,6 +6,7 @@ import pickle
 import subprocess
 import sys
 import threading
+from collections.abc import Iterator
 from functools import partial
 from pathlib import Path
 from typing import Any, NamedTuple
@@ -182,7 +183,15 @@ def test_rows_are_filled_by_a_function_traced_once() -> None:
     assert len(traced) == 1
 
 
-def test_ahead_and_at_once(tmp_path: Path) -> None:
+@pytest.fixture
+def forgetful() -> Iterator[None]:
+    """Nothing is kept, so that what an earlier run left on the disk does not count."""
+    with keeping(None):
+        yield
+
+
+@pytest.mark.usefixtures("forgetful")
+def test_ahead_and_at_once() -> None:
     """Many threads ask for the same, one compiles it. An error in a kernel is the caller's, and no lasting one."""
     made, broken = [], [True]
 
