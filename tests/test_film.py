@@ -16,9 +16,9 @@ from test_simulate import Cylinder, Vessel
 
 import mckibben as mk
 from mckibben.film.frames import Frames, frames_of
-from mckibben.film.outlines import Outline, outlines
 from mckibben.film.pen import valve_word
-from mckibben.film.picture import SCALE, Picture
+from mckibben.film.picture import SCALE, Film
+from mckibben.film.silhouettes import Silhouette, silhouettes
 from mckibben.spec.errors import SpecError
 from mckibben.view import moving
 
@@ -49,23 +49,23 @@ def joint(chart: mk.Chart) -> mk.Motion:
     return mk.simulate(rig, "0.5 s", chart=chart, points=101)
 
 
-def drawn(motion: mk.Motion, frames: Frames, lines: list[tuple[Outline | None, ...]] | None = None) -> Picture:
+def drawn(motion: mk.Motion, frames: Frames, lines: list[tuple[Silhouette | None, ...]] | None = None) -> Film:
     rig = motion.rig
     made = lines or [
-        outlines(muscle, frames.length[:, k], frames.pressure[:, k], frames.inside[:, k])
+        silhouettes(muscle, frames.length[:, k], frames.pressure[:, k], frames.inside[:, k])
         for k, muscle in enumerate(rig.muscles)
     ]
-    return Picture(motion, frames, made, 1.0, SIZE)
+    return Film(motion, frames, made, 1.0, SIZE)
 
 
-def marked(picture: Picture, name: str) -> Iterator[Polygon | Line2D]:
+def marked(picture: Film, name: str) -> Iterator[Polygon | Line2D]:
     for one in picture.axes.get_children():
         if one.get_gid() == name:
             assert isinstance(one, (Polygon, Line2D))
             yield one
 
 
-def corners(picture: Picture, name: str) -> np.ndarray:
+def corners(picture: Film, name: str) -> np.ndarray:
     (one,) = marked(picture, name)
     assert isinstance(one, Polygon)
     return np.asarray(one.get_xy())
@@ -172,12 +172,12 @@ def test_outside_of_the_map_a_dashed_outline_stands_for_the_muscle(lift: mk.Moti
 
 
 def test_there_is_no_outline_where_there_is_no_state() -> None:
-    some = outlines(M, np.array([0.2, 0.1, 0.1]), np.array([1e5, 1e5, 1e5]), np.array([True, True, False]))
+    some = silhouettes(M, np.array([0.2, 0.1, 0.1]), np.array([1e5, 1e5, 1e5]), np.array([True, True, False]))
     assert some[0] is None
     assert some[1] is not None
     assert some[2] is None
     rubs = M.replace("friction", mk.Friction(coefficient=0.3, arm="0.1 mm", constant="0.01 N mm"))
-    (same,) = outlines(rubs, np.array([0.1]), np.array([1e5]), np.array([True]))
+    (same,) = silhouettes(rubs, np.array([0.1]), np.array([1e5]), np.array([True]))
     assert same is not None
     assert np.allclose(same.r, some[1].r, rtol=1e-9)
 
@@ -248,7 +248,7 @@ def test_a_controller_of_ones_own_is_drawn_too(tmp_path: Path) -> None:
 def test_wrong_input_is_told_before_anything_is_solved(
     lift: mk.Motion, asked: dict[str, Any], said: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr("mckibben.film.outlines.outlines", None)
+    monkeypatch.setattr("mckibben.film.silhouettes.silhouettes", None)
     with pytest.raises(SpecError, match=said):
         mk.animate(lift, tmp_path / "x.gif", **asked)
     assert not list(tmp_path.iterdir())

@@ -55,6 +55,21 @@ def test_the_picture_has_the_numbers(data: xr.Dataset) -> None:
     np.testing.assert_allclose(near.get_ydata(), data.force.isel(step=-1).sel({"test.length": 0.11}).values)
 
 
+def test_curves_that_are_left_out_are_told() -> None:
+    over = {"braid.angle": ["36 deg", "37 deg"], "test.length": {"from": "100 mm", "to": "114 mm", "points": 8}}
+    found = mk.sweep(PAPER, mk.Isometric(length="115 mm", pressure="1 bar"), over, tolerance=1e-4, workers=0)
+    figure = mk.plot(found)
+    assert len(figure.axes[0].lines) == 2  # over the length, which has more values, a curve for each angle
+    assert "Drawn:" not in figure.get_supxlabel()
+    found = found.isel({"test.length": slice(None, 1)})
+    many = xr.concat([found] * 4, dim="braid.angle").assign_coords({"braid.angle": np.radians(np.arange(30.0, 38.0))})
+    twice = xr.concat([many] * 9, dim="test.length").assign_coords({"test.length": np.linspace(0.1, 0.11, 9)})
+    twice.attrs, twice["test.length"].attrs = found.attrs, found["test.length"].attrs
+    figure = mk.plot(twice)
+    assert len(figure.axes[0].lines) == 6
+    assert "Drawn: 6 of 8 values of braid.angle." in figure.get_supxlabel().replace("\n", " ")
+
+
 def test_words_tables_and_states_that_are_not_stable() -> None:
     designs = pd.DataFrame({"braid.angle [deg]": [36.0, 37.0, 37.0], "ends": ["clamped", "clamped", "pinned"]})
     found = mk.sweep(PAPER, mk.FreeContraction(pressure="1 bar"), designs=designs, tolerance=1e-4, workers=0)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from inspect import signature
 from os import PathLike
 from pathlib import Path
 from typing import Any
@@ -86,9 +87,9 @@ def animate(
         if speed is not None:
             raise SpecError("animate.speed", speed, "is that of a motion, which simulate gives", "give fps")
         return of_states(shown, path, FPS_OF_STATES if fps is None else fps, force, **looks, size=size)
-    usual = dict(zip(looks, ("fibre_tension", False, False, False, "horizontal", 18.0, 0.0, 1.0), strict=True))
+    usual = signature(animate).parameters
     for name, value in looks.items():
-        if value != usual[name]:
+        if value != usual[name].default:
             raise SpecError(f"animate.{name}", value, "has no meaning for a motion, which is drawn from the side")
     return _of_motion(shown, path, fps, speed, force, SIZE if size is None else read_size("animate", size))
 
@@ -112,14 +113,14 @@ def _of_motion(
     ffmpeg = moving.writer(str(path)) if ending == ".mp4" else None
     rig = rig_of(motion)
     frames = frames_of(motion, fps, speed, whole=ffmpeg is None)
-    from mckibben.film.outlines import outlines  # here, because it takes the solver
-    from mckibben.film.picture import SCALE, Picture
+    from mckibben.film.picture import SCALE, Film
+    from mckibben.film.silhouettes import silhouettes  # here, because it takes the solver
 
     lines = [
-        outlines(muscle, frames.length[:, k], frames.pressure[:, k], frames.inside[:, k])
+        silhouettes(muscle, frames.length[:, k], frames.pressure[:, k], frames.inside[:, k])
         for k, muscle in enumerate(rig.muscles)
     ]
-    picture = Picture(motion, frames, lines, float(speed), size)
+    picture = Film(motion, frames, lines, float(speed), size)
     if ffmpeg is None:
         made = moving.gif(picture.image, len(frames), round(1e3 * frames.shown), SCALE)
     else:

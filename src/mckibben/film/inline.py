@@ -10,11 +10,11 @@ from mckibben.film.pen import Pen
 from mckibben.units import show
 from mckibben.view import style
 
-__all__ = ["Held", "OnLine"]
+__all__ = ["BetweenWalls", "OnLine"]
 
 
 @attrs.frozen(eq=False)
-class Held:
+class BetweenWalls:
     """A muscle between two walls."""
 
     scene: Scene

@@ -9,8 +9,8 @@ import attrs
 import numpy as np
 
 from mckibben.film.frames import Frames
-from mckibben.film.outlines import Outline
 from mckibben.film.pen import Pen, valve_word
+from mckibben.film.silhouettes import Silhouette
 from mckibben.spec.rig import Rig
 
 __all__ = ["Layout", "Scene"]
@@ -28,7 +28,7 @@ class Scene:
 
     rig: Rig
     frames: Frames
-    outlines: Sequence[Sequence[Outline | None]]  #: of each muscle, one each frame
+    silhouettes: Sequence[Sequence[Silhouette | None]]  #: of each muscle, one each frame
     colour: Callable[[float], Any]  #: of a gauge pressure [Pa]
     target: np.ndarray | None = None  #: of a PID, at each frame, SI
 
@@ -45,14 +45,14 @@ class Scene:
     def widest(self) -> float:
         """The largest radius of all [m]."""
         radii = [float(muscle.braid.radius) for muscle in self.rig.muscles]
-        return max([*radii, *(float(one.r.max()) for some in self.outlines for one in some if one is not None)])
+        return max([*radii, *(float(one.r.max()) for some in self.silhouettes for one in some if one is not None)])
 
     def muscle(self, pen: Pen, k: int, which: int, x: float) -> None:
         """One muscle at a frame, with what its valve does."""
         made, frames = self.rig.muscles[which], self.frames
         length = float(frames.length[k, which])
-        outline, colour = self.outlines[which][k], self.colour(float(frames.pressure[k, which]))
-        pen.muscle(length, x, outline, float(made.braid.radius), self.fitting, colour, f"muscle {which}")
+        silhouette, colour = self.silhouettes[which][k], self.colour(float(frames.pressure[k, which]))
+        pen.muscle(length, x, silhouette, float(made.braid.radius), self.fitting, colour, f"muscle {which}")
 
     def valve(self, pen: Pen, k: int, which: int, s: float, x: float, **look: Any) -> None:
         frames = self.frames

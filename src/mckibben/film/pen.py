@@ -8,7 +8,7 @@ import attrs
 import numpy as np
 from matplotlib.axes import Axes
 
-from mckibben.film.outlines import Outline
+from mckibben.film.silhouettes import Silhouette
 from mckibben.view import style
 
 __all__ = ["INK", "METAL", "Pen", "valve_word"]
@@ -89,15 +89,23 @@ class Pen:
         self.line([piston, piston, np.nan, piston, s[1]], [x - 0.8 * wide, x + 0.8 * wide, np.nan, x, x], color=grey)
 
     def muscle(
-        self, length: float, x: float, outline: Outline | None, radius: float, fitting: float, colour: Any, label: str
+        self,
+        length: float,
+        x: float,
+        silhouette: Silhouette | None,
+        radius: float,
+        fitting: float,
+        colour: Any,
+        label: str,
     ) -> None:
-        """A muscle of a length [m] with its fittings; without an outline a dashed one of one radius stands for it."""
-        if outline is None:
+        """A muscle of a length [m] with its fittings; without a silhouette a dashed outline of one radius stands for
+        it."""
+        if silhouette is None:
             z, r = np.array([0.0, length]), np.array([radius, radius])
         else:
-            z, r = outline.z + 0.5 * (length - outline.z[-1]), outline.r
+            z, r = silhouette.z + 0.5 * (length - silhouette.z[-1]), silhouette.r
         both = np.concatenate([z, z[::-1]]), x + np.concatenate([r, -r[::-1]])
-        dashed = outline is None
+        dashed = silhouette is None
         self.area(*both, facecolor=colour, linestyle="--" if dashed else "-", linewidth=1.2, gid=label, zorder=3)
         wide = float(r[0]) * 1.12, float(r[-1]) * 1.12
         self.box((-fitting, float(z[0])), (x - wide[0], x + wide[0]), zorder=4)

@@ -11,27 +11,27 @@ from matplotlib.colors import ListedColormap, Normalize
 from PIL import Image
 
 from mckibben.film.frames import Frames, rig_of
-from mckibben.film.inline import Held, OnLine
+from mckibben.film.inline import BetweenWalls, OnLine
 from mckibben.film.layout import Layout, Scene
-from mckibben.film.outlines import Outline
 from mckibben.film.pen import Pen
 from mckibben.film.pulley import Turning
+from mckibben.film.silhouettes import Silhouette
 from mckibben.results.motion import Motion
 from mckibben.view import motion as curves
 from mckibben.view import style
 from mckibben.view.words import sentence
 
-__all__ = ["SCALE", "Picture"]
+__all__ = ["SCALE", "Film"]
 
 SCALE = ListedColormap(colormaps["Blues"](np.linspace(0.08, 0.9, 256)))
 """Colours of pressure: pale, but not white, where there is none; even steps to the eye."""
 
 
-class Picture:
+class Film:
     """Draws the frames of a motion, one after the other, on one figure whose camera and scales stay."""
 
     def __init__(
-        self, motion: Motion, frames: Frames, outlines: list[tuple[Outline | None, ...]], speed: float,
+        self, motion: Motion, frames: Frames, silhouettes: list[tuple[Silhouette | None, ...]], speed: float,
         size: tuple[int, int],
     ) -> None:  # fmt: skip
         self.frames = frames
@@ -45,11 +45,11 @@ class Picture:
         scale = ScalarMappable(Normalize(0.0, float(style.shown(top, "Pa"))), SCALE)
         wanted = curves.target(motion, "angle") if rig.turns else None
         target = None if wanted is None else np.interp(frames.time, motion.time, wanted)
-        scene = Scene(rig, frames, outlines, lambda P: SCALE(P / top), target)
-        self.layout: Layout = (Held if rig.fixed else Turning if rig.turns else OnLine)(scene)
+        scene = Scene(rig, frames, silhouettes, lambda P: SCALE(P / top), target)
+        self.layout: Layout = (BetweenWalls if rig.fixed else Turning if rig.turns else OnLine)(scene)
         self._panels(motion, scale)
         style.heading(self.figure, f"{motion.data.attrs['title']}{_load(rig)}; {_paced(speed)}")
-        for line in _notes(motion, outlines):
+        for line in _notes(motion, silhouettes):
             style.note(self.figure, line)
         self.still, self.pen = Pen(self.axes, self.layout.way), Pen(self.axes, self.layout.way)
         self.layout.still(self.still)
@@ -176,9 +176,9 @@ def _paced(speed: float) -> str:
     return "in real time" if speed == 1.0 else f"at {speed:g} times real time"
 
 
-def _notes(motion: Motion, outlines: list[tuple[Outline | None, ...]]) -> list[str]:
+def _notes(motion: Motion, silhouettes: list[tuple[Silhouette | None, ...]]) -> list[str]:
     """What must be known, in sentences."""
-    plain = any(one is None for some in outlines for one in some)
+    plain = any(one is None for some in silhouettes for one in some)
     rubs = any(muscle.friction is not None for muscle in rig_of(motion).muscles)
     found = [
         *((f"not complete: {motion.reason}",) if motion.reason else ()),

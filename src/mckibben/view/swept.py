@@ -30,23 +30,27 @@ def swept(data: xr.Dataset) -> Figure:
     """What the test does not hold, at the last state of each design, over the fields that vary.
 
     Over one field of numbers as a curve, over two as curves side by side, else over the designs in their order. States
-    that are not stable have a ring, those that were not reached nothing.
+    that are not stable have a ring, those that were not reached nothing. Curves and designs that are too many are left
+    out, which a note says.
     """
     last = data.isel(step=-1) if "step" in data.dims else data
     name = _watched(data)
     figure = style.new_figure(WIDE, 2.7)
     axes = figure.add_subplot()
     axes.set_ylabel(style.axis_label(name, _unit(last[name], name)))
+    left_out = ""
     if not np.isfinite(last[name].values).any():
         axes.text(0.5, 0.5, "no state was reached", transform=axes.transAxes, ha="center", fontsize=style.LABEL)
     else:
-        _drawn(axes, last, name)
+        left_out = _drawn(axes, last, name)
     style.tidy(axes, "upper left", bbox_to_anchor=(1.0, 1.0))
     found = Swept(data)
     title = str(data.attrs["title"])
     style.heading(figure, f"{title[0].upper()}{title[1:]}: the last state of each")
     if not found.large:
         style.note(figure, f"Designs: {said(found.statuses)}. States: {said(found.counts)}.")
+    if left_out:
+        style.note(figure, left_out)
     muscle = muscle_of(data)
     if muscle is not None:
         style.assumption_note(figure, muscle)
@@ -59,7 +63,8 @@ def _watched(data: xr.Dataset) -> str:
     return "contraction" if kind in (FreeContraction.kind, Isotonic.kind) else "force"
 
 
-def _drawn(axes: Axes, last: xr.Dataset, name: str) -> None:
+def _drawn(axes: Axes, last: xr.Dataset, name: str) -> str:
+    """Draws the states, and says which of them are left out."""
     long = [str(dim) for dim, size in last[name].sizes.items() if size > 1]
     long.sort(key=lambda dim: (last[dim].dtype.kind not in "if", -last.sizes[dim]) if dim in last.coords else (True, 0))
     first = long[0] if long else ""
@@ -73,11 +78,13 @@ def _drawn(axes: Axes, last: xr.Dataset, name: str) -> None:
             label = None if row is None else f"{long[1]} {_value(last[long[1]], row)}"
             colour = style.LINES[k % len(style.LINES)]
             _points(axes, _shown(one[first]), one, name, colour, label, "-")
-        return
+        every = part.sizes[long[1]] if len(long) == 2 else 1
+        return f"Drawn: {len(rows)} of {every} values of {long[1]}." if len(rows) < every else ""
     axes.set_xlabel("Design")
     flat = last[[name, "verdict"]].stack(designs=last[name].dims) if last[name].dims else last.expand_dims("designs")
-    flat = flat.isel(designs=slice(None, MOST))
+    every, flat = flat.sizes["designs"], flat.isel(designs=slice(None, MOST))
     _points(axes, np.arange(flat.sizes["designs"]), flat, name, style.BLUE, None, "none")
+    return f"Drawn: the first {MOST} of {every} designs." if every > MOST else ""
 
 
 def _points(axes: Axes, x: Any, part: xr.Dataset, name: str, colour: str, label: str | None, line: str) -> None:

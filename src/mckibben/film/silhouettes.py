@@ -20,7 +20,7 @@ from mckibben.sweeps.batches import Solved, solve_together
 from mckibben.sweeps.groups import grouped
 from mckibben.sweeps.lines import lines_of
 
-__all__ = ["Outline", "outlines"]
+__all__ = ["Silhouette", "silhouettes"]
 
 TOLERANCE = 1e-4
 """Of the solver: far below what a picture shows."""
@@ -29,7 +29,7 @@ SINGLY = 24
 
 
 @attrs.frozen(eq=False)
-class Outline:
+class Silhouette:
     """A silhouette: the meridian of the braid, from one fitting to the other."""
 
     z: np.ndarray  #: height from the first fitting [m]
@@ -37,27 +37,27 @@ class Outline:
 
 
 @one_thread()
-def outlines(
+def silhouettes(
     muscle: Muscle, lengths: np.ndarray, pressures: np.ndarray, wanted: np.ndarray
-) -> tuple[Outline | None, ...]:
+) -> tuple[Silhouette | None, ...]:
     """One for each length [m] and gauge pressure [Pa] that is wanted; None where there is no stable state.
 
     Friction at the crossings is left out: with it the shape depends on the path.
     """
     frictionless = evolved(muscle, friction=None)
     states, where = np.unique(np.stack([lengths, pressures], axis=1)[wanted], axis=0, return_inverse=True)
-    found: list[Outline | None] = [None] * len(states)
+    found: list[Silhouette | None] = [None] * len(states)
     if len(states):
         left = _together(frictionless, states, found)
         for k in left if len(left) <= SINGLY else []:
             found[k] = _alone(frictionless, *states[k].tolist())
-    answer: list[Outline | None] = [None] * len(lengths)
+    answer: list[Silhouette | None] = [None] * len(lengths)
     for frame, k in zip(np.flatnonzero(wanted).tolist(), where.ravel().tolist(), strict=True):
         answer[frame] = found[k]
     return tuple(answer)
 
 
-def _together(muscle: Muscle, states: np.ndarray, found: list[Outline | None]) -> list[int]:
+def _together(muscle: Muscle, states: np.ndarray, found: list[Silhouette | None]) -> list[int]:
     """States by batches, put into `found`; those that are left."""
     with trusted():
         test = Isobaric(pressure=float(states[0, 1]), length=[float(states[0, 0])])
@@ -72,7 +72,7 @@ def _together(muscle: Muscle, states: np.ndarray, found: list[Outline | None]) -
         for d, k in enumerate(solved.group.index.tolist()):
             left.discard(k)
             if _stable(solved, d):
-                found[k] = Outline(lines["z"][d, 0] - lines["z"][d, 0, 0], lines["r"][d, 0])
+                found[k] = Silhouette(lines["z"][d, 0] - lines["z"][d, 0, 0], lines["r"][d, 0])
     return sorted(left)
 
 
@@ -87,7 +87,7 @@ def _stable(solved: Solved, d: int) -> bool:
     return all(judged.verdict == Verdict.STABLE for judged in seen.verdicts)
 
 
-def _alone(muscle: Muscle, length: float, pressure: float) -> Outline | None:
+def _alone(muscle: Muscle, length: float, pressure: float) -> Silhouette | None:
     try:
         with trusted():
             state = solve(muscle, length=length, pressure=pressure, tolerance=TOLERANCE)
@@ -96,4 +96,4 @@ def _alone(muscle: Muscle, length: float, pressure: float) -> Outline | None:
     if state.verdict != Verdict.STABLE:
         return None
     z, r = (np.asarray(state.result.column(name)[0]) for name in ("z", "r"))
-    return Outline(z - z[0], r)
+    return Silhouette(z - z[0], r)
