@@ -263,9 +263,9 @@ def test_many_states_at_once_or_one_by_one(monkeypatch: pytest.MonkeyPatch) -> N
     """A path walked in compiled code, its states foretold, is that walked state by state from sticking crossings."""
     test = isobaric(*np.linspace(104, 110, 7), 109.5, 108.5, 107.5)
     at_once = mk.run(rubbing(BOTH), test, tolerance=1e-2)
-    along = rubbing_module._along
+    along = rubbing_module.along
     monkeypatch.setattr(
-        rubbing_module, "_along", lambda one, here, begin, path, *rest: along(one, here, begin, path[:1], *rest)
+        rubbing_module, "along", lambda one, here, begin, path, *rest: along(one, here, begin, path[:1], *rest)
     )
     one_by_one = mk.run(rubbing(BOTH), test, tolerance=1e-2)
     assert_allclose(at_once.force, one_by_one.force, rtol=1e-9)

@@ -12,133 +12,29 @@ import attrs
 import jax
 import numpy as np
 
+from mckibben.experiments.going import Going, along, step_to
 from mckibben.measure.report import Part
-from mckibben.measure.rub import Stepped, fresh, rub_along
 from mckibben.measure.survey import ROUNDING, Memories, Survey, error_bound, survey
-from mckibben.model.friction import Remembered
 from mckibben.solver.bench import QUICK, Bench, sizes_for
-from mckibben.solver.held import Held, rows_of, targets_of
+from mckibben.solver.held import Held
 from mckibben.solver.path import INTERRUPTED, Watch
 from mckibben.solver.problem import Problem
-from mckibben.solver.system import Unknowns
 from mckibben.solver.threads import one_thread
 from mckibben.spec import Along, SpecError, Step
 
-__all__ = ["Going", "rubbed", "step_to"]
+__all__ = ["rubbed"]
 
-LARGEST_TURN = 0.05
-"""Largest turn of a crossing [rad] in one step of the path; a longer way is taken in parts."""
 LARGEST = 48
 """Unknowns up to which a path is walked anew: the error that the kink of the moment leaves falls slowly."""
+MOST = 2
+"""Walks at most after the first."""
+LOOSE = 1e-4
+"""Tolerance from which on walks begin on few unknowns."""
 SERIES = 0.5
 """Error by how the series end, over that found, up to which it is points that a path lacks, not unknowns."""
 NEARBY = 2
 """States before and after one whose differences count as its own."""
-SMALLEST = 1.0 / 1024.0
-"""Smallest part of the way from state to state."""
-SHORTER = 0.9
-"""Share of `LARGEST_TURN` that is aimed at where a way is taken in parts: crossings do not turn evenly along it."""
-AT_ONCE = 32
-"""States that are walked in compiled code before they are looked at."""
 LOST = "no state was found on from the one before: the shape gives way, or there is none"
-
-
-@attrs.frozen
-class Going:
-    """Where a path has come: the last state, what its points remember from now on, and what it reads."""
-
-    state: Unknowns
-    outer: Remembered
-    present: dict[str, float]  #: length, volume, force and pressure in SI units
-    dissipated: float = 0.0  #: since the muscle was made [J]
-    iterations: int = 0
-    found: Stepped | None = None  #: the last state with what it was found from
-    shares: tuple[float, ...] = ()  #: where on the last way states were found, the last being 1
-
-    @classmethod
-    def as_made(cls, problem: Problem) -> "Going":
-        """The muscle as made."""
-        inner, outer = jax.tree.map(np.asarray, fresh(problem.basis, problem.p))
-        start = Unknowns(np.zeros(problem.basis.unknowns), np.zeros(problem.loads), inner)
-        present = {"length": problem.unit[1], "volume": problem.unit[2], "force": 0.0, "pressure": 0.0}
-        return cls(start, outer, {name: float(value) for name, value in present.items()})
-
-
-def step_to(
-    problem: Problem, here: Going, begin: Held, end: Held, shares: tuple[float, ...] = (), turn: float | None = None
-) -> Going | None:  # fmt: skip
-    """From a state at which `begin` holds, straight to `end`; in parts where crossings turn far or Newton fails.
-
-    `shares` are those of a way of a muscle that is near: with the same parts, results change smoothly from muscle to
-    muscle. `turn` is that of a crossing where the way was tried in one step, infinite where no state was found.
-    """
-    now, share, left = here, 0.0, list(shares)
-    taken: list[float] = []
-    parts = 1 if turn is None else _parts(1.0, 1.0, turn)
-    while share < 1.0:
-        ways = left or [*np.linspace(share, 1.0, parts + 1)[1:-1].tolist(), 1.0]
-        if ways[0] - share < SMALLEST:
-            return None
-        aims = [end if to >= 1.0 else begin.towards(end, to) for to in ways]
-        at, most = begin if share == 0.0 else begin.towards(end, share), 2.0 * LARGEST_TURN if left else LARGEST_TURN
-        walk = _along(problem, now, at, aims, most)
-        for one, to in zip(walk.states, ways, strict=False):
-            now, share = attrs.evolve(one, iterations=one.iterations + (now.iterations if taken else 0)), to
-            taken.append(to)
-        done, left = len(walk.states), left[len(walk.states) :]
-        if walk.turn is not None:
-            parts, left = _parts(1.0 - share, ways[done] - share, walk.turn), []
-        elif not left:
-            parts = max(parts - done, 1)
-    return attrs.evolve(now, shares=tuple(taken))
-
-
-def _parts(way: float, tried: float, turn: float) -> int:
-    """In how many parts a way is taken of which one was too long: by how far a crossing turned, or half as long."""
-    shorter = SHORTER * LARGEST_TURN / turn if np.isfinite(turn) else 0.5
-    return int(np.ceil(way / (tried * shorter) - 1e-9))
-
-
-@attrs.frozen
-class _Walk:
-    """States in one step each, and why there are no more."""
-
-    states: list[Going]
-    turn: float | None  #: by how much crossings turned in a step that was too long, or infinity; None where all is done
-
-
-def _along(problem: Problem, here: Going, begin: Held, path: Sequence[Held], farthest: float = LARGEST_TURN) -> _Walk:
-    """The first states of a path from one at which `begin` holds, each in one step, as far as that goes: at most
-    `AT_ONCE`, in compiled code."""
-    path = path[:AT_ONCE]
-    own, which = rows_of(begin.names, problem.loads)
-    targets = targets_of((begin, *path, *([path[-1]] * (AT_ONCE - len(path)))), problem.unit, problem.loads)
-    rows = rub_along(
-        (problem.basis, own), problem.p, problem.b, here.state, here.outer, which, targets, np.asarray(len(path)),
-        np.asarray(farthest),
-    )  # fmt: skip
-    rows = jax.tree.map(np.asarray, rows)
-    states: list[Going] = []
-    now = here
-    for k in range(len(path)):
-        turn = float(rows.largest_turn[k]) if rows.good[k] else np.inf
-        if turn > farthest:
-            return _Walk(states, turn)
-        one: Stepped = jax.tree.map(lambda row, k=k: row[k], rows)
-        now = _moved(problem, attrs.evolve(now, iterations=0), one)
-        states.append(now)
-    return _Walk(states, None)
-
-
-def _moved(problem: Problem, now: Going, found: Stepped) -> Going:
-    """Where a path has come with one more state."""
-    unit = problem.load_unit
-    read = (*found.totals, found.state.loads[0] * unit[1], found.state.loads[1] * unit[2])
-    return Going(
-        found.state._replace(memory=found.next_inner), found.next_outer,
-        dict(zip(("length", "volume", "force", "pressure"), map(float, read), strict=True)),
-        now.dissipated + float(found.dissipated), now.iterations + int(found.iterations), found,
-    )  # fmt: skip
 
 
 @attrs.frozen
@@ -159,41 +55,62 @@ def rubbed(
     """The states of every step, on as many unknowns as the tolerance needs, their points crowded by b.
 
     Where slipping crossings border on sticking ones their moment has a kink, of which a series knows nothing: the error
-    is told by how much force and length differ from those on half as many unknowns.
+    is told by how much force and length differ from those on half as many points, or half as many unknowns.
     """
     for step in steps:
         if step.gas is not None or step.along == Along.BRANCH:
             what = "a sealed gas" if step.gas is not None else 'along="branch"'
             raise SpecError("friction", allowed=f"does not go with {what}", advice="hold values, or leave friction out")
-    problem = bench.problem(QUICK, b)
-    legs = _walked(bench, problem, steps, watch)
+    sizes = [QUICK, *(size for size in sizes_for("spectral", tolerance) if QUICK < size <= LARGEST)]
+    smooth = bench.p.friction.chamber is None
+    # Few unknowns first: they may do where little is asked. Else it is points that are amiss as a rule, of which they
+    # tell nothing.
+    few = tolerance >= LOOSE or not smooth
+    left = sizes[0 if few else 1 :]
+    problem = bench.problem(left.pop(0), b)
+    legs = before = _walked(bench, problem, steps, watch)
     errors: list[np.ndarray] = []
-    for size in (size for size in sizes_for("spectral", tolerance) if QUICK < size <= LARGEST):
+    for _ in range(MOST):
         if _interrupted(legs) or (errors and all((error <= tolerance).all() for error in errors)):
             break
-        finer = _finer(bench, problem, size, legs, errors)
+        points = smooth and (_points_lack(problem, legs, errors) if errors else not few)
+        if _dense(problem) if points else not left:
+            break
+        finer = _denser(bench, problem) if points else bench.problem(left.pop(0), b)
         again = _walked(bench, finer, steps, watch)
         if _reached(again) < _reached(legs) and not _interrupted(again):
             break  # short waves may lose the way: what was reached is kept
-        errors = [_differences(bench, *pair) for pair in zip(again, legs, strict=True)]
-        if getattr(finer.basis, "dense", False):  # the same series on more points: the difference knows it not
+        # twice the points are as many as twice the unknowns have, so these are compared with fewer of both
+        coarse = legs if points else before
+        errors = [_differences(bench, *pair) for pair in zip(again, coarse, strict=True)]
+        if _dense(finer):  # the same series on more points: the difference knows it not
             errors = [np.maximum(*pair) for pair in zip(errors, map(partial(_by_tail, finer), again), strict=True)]
-        problem, legs = finer, again
+        problem, legs, before = finer, again, coarse if points else again
+    if not (errors or few or _interrupted(legs)):  # nothing to compare with on more points, so on fewer unknowns
+        coarse = _walked(bench, bench.problem(QUICK, b), steps, watch)
+        errors = [_differences(bench, *pair) for pair in zip(legs, coarse, strict=True)]
     errors = errors or [np.full(len(leg.states), np.nan) for leg in legs]
     return [_part(problem, *pair) for pair in zip(legs, errors, strict=True)]
 
 
-def _finer(bench: Bench, problem: Problem, size: int, legs: list[_Leg], errors: list[np.ndarray]) -> Problem:
-    """What a path is walked on next: the same series on twice the points, where they are what is amiss, or `size`.
+def _points_lack(problem: Problem, legs: list[_Leg], errors: list[np.ndarray]) -> bool:
+    """Whether a path lacks points, not unknowns.
 
     Where slipping crossings border on sticking ones, the sum over the points misses what lies between two of them; by
     more unknowns alone that does not become less. A chamber that slides has a stress that jumps, which takes unknowns.
     """
-    smooth = problem.p.friction.chamber is None
-    if smooth and errors and _largest([_by_tail(problem, leg) for leg in legs]) <= SERIES * _largest(errors):
-        basis = attrs.evolve(problem.basis, dense=True)  # type: ignore[arg-type, unused-ignore]
-        return Problem.of(basis, bench.p, problem.b)
-    return bench.problem(size, problem.b)
+    return _largest([_by_tail(problem, leg) for leg in legs]) <= SERIES * _largest(errors)
+
+
+def _denser(bench: Bench, problem: Problem) -> Problem:
+    """The same series on twice the points."""
+    basis = attrs.evolve(problem.basis, dense=True)  # type: ignore[arg-type, unused-ignore]
+    return Problem.of(basis, bench.p, problem.b)
+
+
+def _dense(problem: Problem) -> bool:
+    """Whether it has twice the points of other problems."""
+    return bool(getattr(problem.basis, "dense", False))
 
 
 def _by_tail(problem: Problem, leg: _Leg) -> np.ndarray:
@@ -266,7 +183,7 @@ def _states(problem: Problem, here: Going, path: Sequence[Held], watch: Any, fir
         while len(states) < len(path):
             k, held = len(states), path[len(states)]
             begin = Held(held.names, tuple(now.present[name] for name in held.names)) if not k else path[k - 1]
-            walk = _along(problem, now, begin, path[k:])
+            walk = along(problem, now, begin, path[k:])
             found = walk.states
             if not found:  # the next is too far for one step
                 parts = step_to(problem, now, begin, held, turn=walk.turn)

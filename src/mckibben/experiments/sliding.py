@@ -5,7 +5,7 @@ from typing import Any
 import attrs
 import numpy as np
 
-from mckibben.experiments.rubbing import Going
+from mckibben.experiments.going import Going
 from mckibben.measure.rub import Stepped, rub
 from mckibben.model.friction import Remembered
 from mckibben.model.parameters import Rubbing

@@ -15,7 +15,8 @@ import numpy as np
 
 from mckibben.data.branches import UNKNOWN
 from mckibben.discretise.placement import crowding
-from mckibben.experiments.rubbing import LARGEST, Going, step_to
+from mckibben.experiments.going import Going, step_to
+from mckibben.experiments.rubbing import LARGEST
 from mckibben.fitting.differences import by_differences
 from mckibben.fitting.free import Free, put_in
 from mckibben.fitting.misfit import OfOneMuscle, Points, Seen
