@@ -13,10 +13,11 @@ import jax
 import numpy as np
 
 from mckibben.measure.report import Part
-from mckibben.measure.rub import Stepped, fresh, rub_along
+from mckibben.measure.rub import Stepped, fresh, rub, rub_along
 from mckibben.measure.survey import ROUNDING, Memories, Survey, error_bound, survey
 from mckibben.model.friction import Remembered
 from mckibben.solver.bench import QUICK, Bench, sizes_for
+from mckibben.solver.find import find
 from mckibben.solver.held import Held, rows_of, targets_of
 from mckibben.solver.path import INTERRUPTED, Watch
 from mckibben.solver.problem import Problem
@@ -288,7 +289,25 @@ def _pressurised(problem: Problem, here: Going, held: Held) -> Going | None:
     if pressure is None:
         return here
     legs = [Held.of(length=here.present["length"], pressure=value) for value in (0.0, pressure)]
-    return step_to(problem, here, legs[0], legs[1])
+    found = step_to(problem, here, legs[0], legs[1])
+    if found is None and (mounted := _mounted(problem, here, legs[0])) is not None:
+        found = step_to(problem, mounted, legs[0], legs[1])
+    return found
+
+
+def _mounted(problem: Problem, here: Going, held: Held) -> Going | None:
+    """The muscle at its length as made without pressure, where it leaves the cylinder as made by so much that Newton
+    does not find there: a tube that is smaller than the braid pulls slack fibres in. It is sought from the state
+    without friction."""
+    if problem.p.friction.chamber is not None:
+        return None  # without friction it is a space of other unknowns
+    free = find(attrs.evolve(problem, p=problem.p._replace(friction=None)), held)
+    own, which = rows_of(held.names, problem.loads)
+    start = here.state._replace(u=free.u, loads=free.loads)
+    to = targets_of((held,), problem.unit, problem.loads)[0]
+    found = rub((problem.basis, own), problem.p, problem.b, start, here.outer, which, to, np.asarray(False))
+    found = jax.tree.map(np.asarray, found)
+    return _moved(problem, here, found) if free.converged and found.good else None
 
 
 def _part(problem: Problem, leg: _Leg, error: np.ndarray) -> Part:
