@@ -72,7 +72,7 @@ def report(rows: list[dict[str, Any]], about: str) -> None:
         "| --- | --- | --- | --- | --- |",
     ]
     for name, what in CHECKS.items():
-        off = np.array([max(found[name], 0.0) for found in whole if name in found])
+        off = np.array([abs(max(found[name], 0.0)) for found in whole if name in found])
         if len(off):
             lines.append(f"| {what} | {len(off)} | {np.median(off):.1e} | {off.max():.1e} | {int((off > 1.0).sum())} |")
     if whole:
