@@ -110,3 +110,64 @@ def test_command(tmp_path: Path) -> None:
 def test_no_state_to_compare_with() -> None:
     with pytest.raises(mk.SpecError, match="not stable there"):
         mk.effects(mk.presets.paper(), length="130 mm", pressure="1 bar")
+
+
+TUBE = mk.Chamber(outer_diameter="20 mm", inner_diameter="18 mm", law=mk.NeoHookean(c1="50 kPa"), gap=True)
+SLIDES, CROSSINGS = "chamber sliding along the mesh", "friction at the crossings"
+
+
+def test_a_chamber_that_slides(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Brought to the length without pressure and filled, by `run`; friction at the crossings is told apart from it."""
+    frictions = [one for one in experiment.EFFECTS if one.name in (SLIDES, CROSSINGS)]
+    monkeypatch.setattr(experiment, "EFFECTS", frictions)
+    monkeypatch.setattr(experiment, "CLOSE", 1e-2)
+    muscle, at = mk.presets.paper().replace("chamber", TUBE), {"length": "105 mm", "pressure": "0.3 bar"}
+    held = mk.solve(muscle, **at)  # type: ignore[arg-type]
+    path = mk.Isometric(length="105 mm", pressure="0 to 0.3 bar", points=11)
+
+    def told(found: mk.Effects, coefficient: float) -> float:
+        """What the row says, once it is found to be what `run` says of the chamber's friction alone."""
+        sliding = muscle.replace("friction", mk.Friction(chamber_coefficient=coefficient))
+        force = mk.run(sliding, path, tolerance=1e-2).force[-1]
+        share = float(found.table.loc[SLIDES, "force [%]"])
+        assert_allclose(share, 100.0 * (force / held.force - 1.0), rtol=1e-9)
+        return share
+
+    found = mk.effects(muscle, **at)  # type: ignore[arg-type]
+    assert -1.0 < told(found, 0.3) < -0.5  # the tube lies loose, and is caught as it lies
+    assert found.data["assumed"].values.all()
+    assert found.table.loc[SLIDES, "switch"] == "friction.chamber_coefficient = 0.3"
+    assert np.isfinite(
+        found.table.loc[SLIDES, ["volume [%]", "middle_radius [%]", "peak_fibre_tension [%]"]].tolist()
+    ).all()
+    both = mk.Friction(coefficient=0.3, arm="0.1 mm", chamber_coefficient=0.1)
+    own = mk.effects(muscle.replace("friction", both), **at)  # type: ignore[arg-type]
+    assert told(own, 0.1) != told(found, 0.3)
+    assert not own.data["assumed"].values.any()
+    assert own.table.loc[SLIDES, "switch"] == "friction.chamber_coefficient, as given"
+    assert_allclose(own.table.loc[CROSSINGS, "force [%]"], found.table.loc[CROSSINGS, "force [%]"], rtol=1e-12)
+    alone = mk.Friction(chamber_coefficient=0.1)
+    asked = dict(
+        zip(("crossings", "chamber"), experiment._own(frictions, muscle.replace("friction", alone)), strict=True)
+    )
+    assert asked["crossings"].assumed
+    assert asked["crossings"].on.chamber_coefficient is None
+    assert not asked["chamber"].assumed
+
+
+def test_chambers_that_cannot_slide_have_no_row() -> None:
+    law = mk.NeoHookean(c1="50 kPa")
+    bellows = mk.Bellows(axial_stiffness="2 N")
+    for chamber, slides in (
+        (None, False),
+        (mk.Chamber(thickness="1 mm", law=law), False),
+        (mk.Chamber(thickness="1 mm", law=law, lies="inside"), False),
+        (mk.Chamber(law=bellows), False),
+        (mk.Chamber(law=bellows, lies="inside"), True),
+        (TUBE, True),
+    ):
+        names = [
+            one.name for one in experiment._own(experiment.EFFECTS, mk.presets.paper().replace("chamber", chamber))
+        ]
+        assert (SLIDES in names) == slides
+        assert CROSSINGS in names

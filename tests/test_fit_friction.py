@@ -105,3 +105,24 @@ def test_points_in_no_order_are_refused() -> None:
     length = 1e-3 * np.random.default_rng(0).permutation(np.linspace(90.0, 110.0, 20))
     with pytest.raises(mk.SpecError, match="come in no order, and with friction forces depend on the path"):
         mk.fit(MUSCLE, measured(length, length), CONSTANT)
+
+
+def test_a_chamber_that_slides_is_fitted_along_the_path() -> None:
+    """Forces are those of runs, and derivatives those of runs beside it."""
+    bellows = mk.Chamber(law=mk.Bellows(axial_stiffness=2.0), lies="inside")
+    muscle = mk.presets.paper().replace("chamber", bellows)
+    muscle = muscle.replace("friction", mk.Friction(chamber_coefficient=0.01))
+    lengths = [0.11, 0.105, 0.1, 0.104]
+
+    def force(coefficient: float) -> np.ndarray:
+        own = muscle.replace("friction.chamber_coefficient", coefficient)
+        return mk.run(own, mk.Isobaric(pressure="0.05 bar", length=lengths), tolerance=1e-2).force
+
+    data = mk.read_data({"length [m]": lengths, "pressure [Pa]": [5e3] * 4, "force [N]": force(0.01)})
+    misfit = misfit_of(data, {"friction.chamber_coefficient": "0.005 to 0.015"}, muscle)
+    seen = misfit(misfit.start)
+    assert_allclose(seen.force, data.force, rtol=1e-5)
+    by_runs = (force(0.0101) - force(0.0099)) / 2e-4
+    (slope,) = (seen.slopes / [one.slope(float(at)) for one, at in zip(misfit.free, misfit.start, strict=True)]).T
+    assert_allclose(slope, by_runs, rtol=0.02, atol=0.02 * np.abs(by_runs).max())
+    assert np.abs(by_runs).max() > 0.1

@@ -335,20 +335,69 @@ def test_what_needs_a_diameter() -> None:
     assert rubbing(braid__fibre=stiffnesses).friction is not None  # a constant moment does not ask for it
 
 
-def test_calls_that_refuse() -> None:
-    muscle, test = rubbing(), mk.Isometric(length="110 mm", pressure="1 bar")
-    calls = [
-        lambda: mk.limits(muscle, pressure="1 bar"),
-        lambda: mk.least_pressure(muscle, length="110 mm"),
-        lambda: mk.working_range(muscle, pressures=["1 bar"]),
-        lambda: mk.force_map(muscle, length=["110 mm"], pressure=["1 bar"]),
-        lambda: mk.response(muscle, test),
-        lambda: mk.sensitivity(muscle, test),
-    ]
-    for call in calls:
-        with pytest.raises(mk.SpecError, match="depends on the path"):
-            call()
+def _loose(muscle: mk.Muscle) -> mk.Muscle:
+    """The muscle with a tube that slides, whose crossings do not rub."""
+    tube = mk.Chamber(outer_diameter="20 mm", inner_diameter="18 mm", law=mk.NeoHookean(c1="50 kPa"), gap=True)
+    return muscle.replace("friction", None).replace("chamber", tube)
+
+
+HELD = mk.Isometric(length="110 mm", pressure="1 bar")
+PULL = mk.Maximise(mk.ForceAt(pressure="1 bar", contraction="5 %"))
+WITHOUT_A_PATH: dict[str, Any] = {
+    "limits": lambda muscle: mk.limits(muscle, pressure="1 bar"),
+    "least_pressure": lambda muscle: mk.least_pressure(muscle, length="110 mm"),
+    "working_range": lambda muscle: mk.working_range(muscle, pressures=["1 bar"]),
+    "force_map": lambda muscle: mk.force_map(muscle, length=["110 mm"], pressure=["1 bar"]),
+    "burst_pressures": lambda muscle: mk.burst_pressures(muscle, length="110 mm"),
+    "response": lambda muscle: mk.response(muscle, HELD),
+    "sensitivity": lambda muscle: mk.sensitivity(muscle, HELD),
+    "tolerances": lambda muscle: mk.tolerances(muscle, HELD, {"braid.angle": "1 deg"}),
+    "design": lambda muscle: mk.design(muscle, {"braid.angle": "36 deg to 38 deg"}, PULL),
+}
+
+
+@pytest.mark.parametrize("slides", [False, True])
+@pytest.mark.parametrize("name", WITHOUT_A_PATH)
+def test_calls_that_refuse(name: str, slides: bool) -> None:
+    """Each names itself, and what to do in its place: those that differentiate, differences."""
+    muscle = rubbing()
+    if slides:
+        muscle = _loose(muscle).replace("friction", mk.Friction(chamber_coefficient=0.3))
+    with pytest.raises(mk.SpecError, match=rf"does not go with {name}\(\): .* depends on the path .* use ") as caught:
+        WITHOUT_A_PATH[name](muscle)
+    assert ("differences of run()" in str(caught.value)) == (name in ("response", "sensitivity"))
+
+
+def test_derivatives_under_a_transformation_refuse_too() -> None:
+    def force(moment: Any) -> Any:
+        return mk.response(rubbing(mk.Friction(constant=moment)), HELD)["force"][0]
+
+    with pytest.raises(mk.SpecError, match="differences of run"):
+        jax.grad(force)(2e-5)
+
+
+def test_choices_with_friction_are_refused_too() -> None:
+    choices = {"friction": [mk.Friction(constant="0.02 N mm"), mk.Friction(constant="0.01 N mm")]}
+    with pytest.raises(mk.SpecError, match="does not go with design"):
+        mk.design(mk.presets.paper(), choices, PULL, designs=64)
+
+
+def test_tests_that_refuse() -> None:
     with pytest.raises(mk.SpecError, match="sealed gas"):
-        mk.run(muscle, mk.Step(length="110 mm", gas="isothermal"))
+        mk.run(rubbing(), mk.Step(length="110 mm", gas="isothermal"))
     with pytest.raises(mk.SpecError, match="turn freely"):
-        mk.run(muscle, test, discretisation="paper")
+        mk.run(rubbing(), HELD, discretisation="paper")
+
+
+@pytest.mark.filterwarnings("ignore:.*would not touch:mckibben.MuscleWarning")
+def test_slack_fibres_are_mounted_first(monkeypatch: pytest.MonkeyPatch) -> None:
+    """A tube smaller than the braid pulls slack fibres in so far that Newton finds no way from the braid as made."""
+    tube = mk.Chamber(outer_diameter="18 mm", inner_diameter="14.6 mm", law=mk.NeoHookean(c1="500 kPa"))
+    muscle = rubbing(BOTH, braid__fibre__stretch=True, braid__fibre__slack=True, chamber=tube)
+    test = isobaric(100, 95, 90, 95)
+    found = mk.run(muscle, test, tolerance=1e-2)
+    assert found.verdict == ("stable",) * 4
+    assert found.force[3] - found.force[1] > 0.1  # more is needed to lengthen it than it pulls as it shortens
+    assert (np.diff(found.data["dissipated"]) > 0.0).all()
+    monkeypatch.setattr(rubbing_module, "_mounted", lambda *_: None)
+    assert mk.run(muscle, test, tolerance=1e-2).reached == 0

@@ -155,6 +155,14 @@ def test_a_tube_slides_until_it_is_pressed_to_the_mesh() -> None:
     assert found.data["dissipated"][2] >= found.data["dissipated"][1] > found.data["dissipated"][0] == 0.0
 
 
+def test_a_sweep_goes_one_by_one() -> None:
+    test = isobaric("0.05 bar", 105, 100)
+    swept = mk.sweep(sliding(0.1), test, {"friction.chamber_coefficient": [0.1, 0.2]}, workers=1, tolerance=1e-2)
+    assert (swept["status"] == 0).all()
+    assert (swept["method"] == 1).all()
+    assert_allclose(swept["force"].values[1], mk.run(sliding(0.2), test, tolerance=1e-2).force, rtol=1e-12)
+
+
 def test_files(tmp_path: Any) -> None:
     muscle = sliding(0.2, constant="0.01 N mm", chamber_stiffness="0.2 MPa/mm")
     assert muscle.friction is not None

@@ -41,7 +41,12 @@ Every section is written by the script that it names; do not edit.
 Each target is given to `mk.solve` with nothing else. It counts as reachable if the default call or any of the judges
 finds a converged state of admissible shape that is stable there. The judges (`validation/judges.py`) are asked wherever
 the default call gave no stable state: two long paths (pressure first, pressure last; 2 x 24 states) and six searches
-from random shapes."""
+from random shapes.
+
+Pages of their own: [random options](random_options.md), whether any combination of effects gives a wrong number;
+[random friction](random_friction.md), the same of muscles that rub, along closed paths; [chambers that touch in
+part](touching.md) and [programmed braids](programmed.md), whether the error estimate covers the true error;
+[fits](recovery.md), whether intervals hold the truth."""
 
 SAID = """{count} random muscles with one target each ({shares}; seed {seed}; ranges in `validation/sample.py`), by
 `python validation/random_muscles.py --sample {name}`."""

@@ -92,7 +92,7 @@ def _show(found: Effects) -> None:
     for name, row in frame.iterrows():
         if row["reason"]:
             say(f"{name}: {row['reason']}")
-    say("changes by the effect, with it against without; time: of a state, over that without it")
+    say("changes by the effect, with it against without; time: of a state, or its path, over that of a state without")
 
 
 def _share(value: float) -> str:

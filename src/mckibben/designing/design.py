@@ -73,7 +73,8 @@ def design(
         which demands block and by how much. After Ctrl-C it is the best so far.
 
     Raises:
-        SpecError: for names, ranges, measures or numbers that cannot be, or where no design that was tried has a state.
+        SpecError: for names, ranges, measures or numbers that cannot be, friction, or where no design that was tried
+            has a state.
 
     >>> muscle = mk.presets.paper().replace("braid.angle", "45 deg")
     >>> pull = mk.ForceAt(pressure="1 bar", contraction="5 %")
@@ -82,8 +83,11 @@ def design(
     >>> best.limits["reached"].tolist(), round(best.values["braid.angle"], 2)  # rad
     ([True], 0.8)
     """
-    refuse_friction(muscle, "design")
+    instead = "sweep() over the same numbers"
+    refuse_friction(muscle, "design", instead)
     task = Task(space_of(muscle, free), _goals(objective), limits_of(_demands(subject_to)))
+    for own in _kinds(task.space):
+        refuse_friction(own, "design", instead)  # also where it is one of the choices
     for measure in task.measures:
         for own in _kinds(task.space):
             check_measure(measure, own)

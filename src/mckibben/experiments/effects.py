@@ -3,18 +3,22 @@
 from __future__ import annotations
 
 import time
+import warnings
 from collections.abc import Callable, Iterable
 from typing import Any
 
 import attrs
 import numpy as np
 
+from mckibben.experiments.run import run
 from mckibben.experiments.solve import solve
+from mckibben.measure.caution import MuscleWarning
 from mckibben.results.effects import QUANTITIES, Effects
-from mckibben.results.result import State
+from mckibben.results.result import Result, State
 from mckibben.results.verdict import Verdict
-from mckibben.spec import Fittings, Friction, Muscle, SpecError, Step
+from mckibben.spec import Fittings, Friction, Isometric, Muscle, SpecError, Step
 from mckibben.spec.declared import evolved
+from mckibben.spec.friction import held_to_mesh
 from mckibben.spec.text import to_toml
 from mckibben.units import show
 
@@ -34,6 +38,10 @@ class Effect:
 
 
 _COMPLIANCE = "0.01 mm/N"
+_CROSSINGS, _SLIDING = "friction at the crossings", "chamber sliding along the mesh"
+FILLED, CLOSE = 11, 1e-4
+"""States from no pressure to that asked for, by which a chamber that slides is filled: twice as many change its force
+by some mN; and what its error is aimed at, which is far below what it changes."""
 
 EFFECTS = (
     Effect("stretch of the fibres", "braid.fibre.stretch", True, False, "braid.fibre.stretch = true"),
@@ -46,8 +54,12 @@ EFFECTS = (
         f'fittings.compliance = "{_COMPLIANCE}"', assumed=True,
     ),
     Effect(
-        "friction at the crossings", "friction", Friction(coefficient=0.3, arm="0.1 mm"), None,
+        _CROSSINGS, "friction", Friction(coefficient=0.3, arm="0.1 mm"), None,
         'friction = { coefficient = 0.3, arm = "0.1 mm" }', assumed=True,
+    ),
+    Effect(
+        _SLIDING, "friction", Friction(chamber_coefficient=0.3), None,
+        "friction.chamber_coefficient = 0.3", assumed=True,
     ),
     Effect("ends that hold the radius", "ends", "clamped", "free", 'ends = "clamped"'),
     Effect("fittings of another radius", "end_radii", None, None, "end_radii, as given"),
@@ -68,9 +80,11 @@ def effects(
 
     Stretch and roll of the fibres, where the wall lies and how thick it is, a gap between tube and braid, fittings that
     give way or have a radius of their own, friction, and the ends. What a muscle already has is switched off for the
-    comparison; the rest is switched on, one by one. Friction has no one state: what is told is half of what lies
-    between the forces as the muscle lengthens and as it shortens. A gap has a row where the chamber lies inside, end
-    radii where the muscle has them: no others are known. Bellows have none: without their folds they would be another
+    comparison; the rest is switched on, one by one. Friction at the crossings has no one state: what is told is half of
+    what lies between the forces as the muscle lengthens and as it shortens. A chamber that slides along the mesh (a
+    tube with a gap, bellows) is told against one that the mesh holds as it is mounted, along one path: brought to the
+    length without pressure, as made, and then filled. A gap has a row where the chamber lies inside, end radii where
+    the muscle has them: no others are known. Bellows have no row: without their folds they would be another
     tube, whose wall and law the muscle does not tell, so compare two muscles for that.
 
     Args:
@@ -113,29 +127,52 @@ def effects(
 def _own(effects: Iterable[Effect], muscle: Muscle) -> list[Effect]:
     """The effects, with the muscle's own friction where it has one, and on its own dead length.
 
-    A gap is one of a chamber inside alone, and of another radius of the fittings, or a programmed braid, none is known
-    but the muscle's own. Such a braid asks for fibres that stretch.
+    A gap is one of a chamber inside alone, sliding of one that the mesh does not hold, and of another radius of the
+    fittings, or a programmed braid, none is known but the muscle's own. Such a braid asks for fibres that stretch.
     """
     inside = muscle.chamber is not None and muscle.chamber.inside
+    effects = [one for one in effects if one.name != _SLIDING or not held_to_mesh(muscle.chamber)]
     effects = [one for one in effects if one.field != "chamber.gap" or inside]
     effects = [one for one in effects if one.field != "end_radii" or muscle.end_radii is not None]
     programmed = muscle.braid.angle_profile is not None
     effects = [one for one in effects if one.field != ("braid.fibre.stretch" if programmed else "braid.angle_profile")]
     own: dict[str, dict[str, Any]] = {}
-    if muscle.friction is not None:
-        own["friction"] = {"on": muscle.friction, "switch": "friction, as given", "assumed": False}
+    rubs = muscle.friction
+    if rubs is not None and (rubs.coefficient > 0.0 or rubs.constant > 0.0):
+        crossings = evolved(rubs, chamber_coefficient=None, chamber_stiffness=None)
+        own[_CROSSINGS] = {"on": crossings, "switch": "friction, as given", "assumed": False}
+    if rubs is not None and rubs.chamber_coefficient is not None:
+        sliding = Friction(chamber_coefficient=rubs.chamber_coefficient, chamber_stiffness=rubs.chamber_stiffness)
+        own[_SLIDING] = {"on": sliding, "switch": "friction.chamber_coefficient, as given", "assumed": False}
     dead = None if muscle.fittings is None else muscle.fittings.dead_length
     if dead is not None:
-        own["fittings"] = {"on": Fittings(compliance=_COMPLIANCE, dead_length=dead), "off": Fittings(dead_length=dead)}
-    return [attrs.evolve(one, **own.get(one.field, {})) for one in effects]
+        given = {"on": Fittings(compliance=_COMPLIANCE, dead_length=dead), "off": Fittings(dead_length=dead)}
+        own |= {one.name: given for one in effects if one.field == "fittings"}
+    return [attrs.evolve(one, **own.get(one.name, {})) for one in effects]
 
 
 def _timed(muscle: Muscle, held: dict[str, float]) -> tuple[State, float]:
-    """A state, and how long it takes once its functions are compiled [s]."""
-    solve(muscle, **held)
+    """A state, and how long it takes once its functions are compiled [s]; of a chamber that slides with its path."""
+    reach = _filled if _slides(muscle) else solve
+    reach(muscle, **held)
     begin = time.perf_counter()
-    state = solve(muscle, **held)
+    state = reach(muscle, **held)
     return state, time.perf_counter() - begin
+
+
+def _slides(muscle: Muscle) -> bool:
+    return muscle.friction is not None and muscle.friction.chamber_coefficient is not None
+
+
+def _filled(muscle: Muscle, length: float, pressure: float) -> State:
+    """The end of the path by which a chamber that slides is told: as made, to the length without pressure, filled."""
+    test = Isometric(length=length, pressure=np.linspace(0.0, pressure, FILLED if pressure else 1).tolist())
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", MuscleWarning)  # the other effects' states do not warn either
+        curve = run(muscle, test, tolerance=CLOSE)
+    last = curve.data.isel(step=[-1])
+    verdict, reason = (str(last[name].values[0]) for name in ("verdict", "reason"))
+    return State(Result(muscle, test, last), Verdict(verdict), reason, None)
 
 
 def _row(muscle: Muscle, held: dict[str, float], effect: Effect, base: State, pace: float) -> dict[str, Any]:
@@ -170,8 +207,8 @@ def _has(muscle: Muscle, effect: Effect) -> bool:
 
 
 def _number(state: State, name: str) -> float:
-    """One quantity; of a muscle with friction the force as it lengthens, and nothing else."""
-    if state.result.muscle.friction is not None:
+    """One quantity; of a muscle whose crossings rub the force as it lengthens, and nothing else."""
+    if state.result.muscle.friction is not None and not _slides(state.result.muscle):
         below, above = state.force_interval or (np.nan, np.nan)
         return state.force + 0.5 * (above - below) if name == "force" else np.nan
     data = state.result.data.isel(step=0)

@@ -12,7 +12,7 @@ from mckibben.spec.angle import MAGIC, between, both_ways, tendency
 from mckibben.spec.winding import extremes, fibre_length
 from mckibben.units import show
 
-__all__ = ["beyond", "derived", "refuse_friction", "turns"]
+__all__ = ["BY_DIFFERENCES", "beyond", "derived", "refuse_friction", "turns"]
 
 
 def derived(muscle: Muscle) -> Iterator[tuple[str, str, str]]:
@@ -88,9 +88,13 @@ def beyond(muscle: Muscle, test: Test | None) -> Iterator[str]:
             yield f"note: the test asks for a length of {show(length, 'm')}; full extension is {show(most, 'm')}"
 
 
-def refuse_friction(muscle: Muscle, call: str) -> None:
+BY_DIFFERENCES = "differences of run() between muscles that are near, as fit() does"
+"""In place of exact derivatives, which would have to carry those of all that a path leaves behind."""
+
+
+def refuse_friction(muscle: Muscle, call: str, instead: str = "run()") -> None:
     """SpecError for a call that asks for states without a path, of a muscle whose states depend on it."""
     if muscle.friction is not None:
         said = f"does not go with {call}(): a state then depends on the path to it"
-        advice = 'use run(), or leave it out: muscle.replace("friction", None)'
+        advice = f'use {instead}, or leave it out: muscle.replace("friction", None)'
         raise SpecError("friction", allowed=said, advice=advice)

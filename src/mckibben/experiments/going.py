@@ -6,13 +6,14 @@ import attrs
 import jax
 import numpy as np
 
-from mckibben.measure.rub import Stepped, fresh, rub_along
+from mckibben.measure.rub import Stepped, fresh, rub, rub_along
 from mckibben.model.friction import Remembered
+from mckibben.solver.find import find
 from mckibben.solver.held import Held, rows_of, targets_of
 from mckibben.solver.problem import Problem
 from mckibben.solver.system import Unknowns
 
-__all__ = ["Going", "Walk", "along", "step_to"]
+__all__ = ["Going", "Walk", "along", "mounted", "step_to"]
 
 LARGEST_TURN = 0.05
 """Largest turn of a crossing [rad] in one step of the path; a longer way is taken in parts."""
@@ -120,3 +121,18 @@ def _moved(problem: Problem, now: Going, found: Stepped) -> Going:
         dict(zip(("length", "volume", "force", "pressure"), map(float, read), strict=True)),
         now.dissipated + float(found.dissipated), now.iterations + int(found.iterations), found,
     )  # fmt: skip
+
+
+def mounted(problem: Problem, here: Going, held: Held) -> Going | None:
+    """The muscle at its length as made without pressure, where it leaves the cylinder as made by so much that Newton
+    does not find there: a tube that is smaller than the braid pulls slack fibres in. It is sought from the state
+    without friction."""
+    if problem.p.friction.chamber is not None:
+        return None  # without friction it is a space of other unknowns
+    free = find(attrs.evolve(problem, p=problem.p._replace(friction=None)), held)
+    own, which = rows_of(held.names, problem.loads)
+    start = here.state._replace(u=free.u, loads=free.loads)
+    to = targets_of((held,), problem.unit, problem.loads)[0]
+    found = rub((problem.basis, own), problem.p, problem.b, start, here.outer, which, to, np.asarray(False))
+    found = jax.tree.map(np.asarray, found)
+    return _moved(problem, here, found) if free.converged and found.good else None

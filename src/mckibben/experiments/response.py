@@ -12,7 +12,7 @@ from mckibben.compiled.kernel import kernel
 from mckibben.discretise.fields import place
 from mckibben.discretise.placement import crowdings
 from mckibben.discretise.spectral import Line
-from mckibben.experiments.foresee import refuse_friction
+from mckibben.experiments.foresee import BY_DIFFERENCES, refuse_friction
 from mckibben.experiments.run import crowding_for, solved
 from mckibben.measure.read import read
 from mckibben.model.parameters import Number, Parameters, parameters
@@ -56,14 +56,14 @@ def response(
         which ones are stable and admissible.
 
     Raises:
-        SpecError: for a test without derivatives, or a tolerance out of range.
+        SpecError: for a test without derivatives, friction, or a tolerance out of range.
 
     >>> test = mk.Isometric(length="115 mm", pressure="0 to 1 bar", points=3)
     >>> found = mk.response(mk.presets.paper(), test)
     >>> found["force"].round(2).tolist()  # N
     [3.29, 52.36, 101.22]
     """
-    refuse_friction(muscle, "response")
+    refuse_friction(muscle, "response", BY_DIFFERENCES)
     steps = differentiable(test.as_steps(muscle), muscle)
     p = parameters(muscle)
     fixed_p, fixed_steps = jax.tree.map(jax.lax.stop_gradient, (p, steps))

@@ -12,7 +12,7 @@ import attrs
 import jax
 import numpy as np
 
-from mckibben.experiments.going import Going, along, step_to
+from mckibben.experiments.going import Going, along, mounted, step_to
 from mckibben.measure.report import Part
 from mckibben.measure.survey import ROUNDING, Memories, Survey, error_bound, survey
 from mckibben.solver.bench import QUICK, Bench, sizes_for
@@ -205,7 +205,10 @@ def _pressurised(problem: Problem, here: Going, held: Held) -> Going | None:
     if pressure is None:
         return here
     legs = [Held.of(length=here.present["length"], pressure=value) for value in (0.0, pressure)]
-    return step_to(problem, here, legs[0], legs[1])
+    found = step_to(problem, here, legs[0], legs[1])
+    if found is None and (there := mounted(problem, here, legs[0])) is not None:
+        found = step_to(problem, there, legs[0], legs[1])
+    return found
 
 
 def _part(problem: Problem, leg: _Leg, error: np.ndarray) -> Part:

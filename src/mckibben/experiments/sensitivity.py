@@ -12,7 +12,7 @@ import numpy as np
 from mckibben.compiled.arrays import Array
 from mckibben.compiled.kernel import kernel
 from mckibben.discretise.fields import place
-from mckibben.experiments.foresee import refuse_friction
+from mckibben.experiments.foresee import BY_DIFFERENCES, refuse_friction
 from mckibben.experiments.response import differentiable, settled
 from mckibben.experiments.run import crowding_for, solved
 from mckibben.measure.judge import Judgement
@@ -62,7 +62,7 @@ def sensitivity(
         A `Sensitivity`: tables `relative` and `absolute`. Without an admissible state they hold NaN; `reason` says why.
 
     Raises:
-        SpecError: for unknown names, a state that the test does not have, or a test without derivatives.
+        SpecError: for unknown names, a state that the test does not have, friction, or a test without derivatives.
 
     >>> test = mk.Isometric(length="115 mm", pressure="1 bar")
     >>> found = mk.sensitivity(mk.presets.paper(), test, of="force", by=["braid.angle", "test.length"])
@@ -71,7 +71,7 @@ def sensitivity(
     test.length  115 mm   5.39
     braid.angle  37 deg   5.35
     """
-    refuse_friction(muscle, "sensitivity")
+    refuse_friction(muscle, "sensitivity", BY_DIFFERENCES)
     steps = differentiable(test.as_steps(muscle), muscle)
     index, row = _place(steps, state)
     columns = [list(OBSERVED).index(name) for name in _results(of, steps[index])]

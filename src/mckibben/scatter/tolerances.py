@@ -7,6 +7,7 @@ from typing import Any
 
 import numpy as np
 
+from mckibben.experiments.foresee import refuse_friction
 from mckibben.experiments.sensitivity import sensitivity
 from mckibben.measure.report import versions
 from mckibben.results.sensitivity import Sensitivity
@@ -83,6 +84,7 @@ def tolerances(
     braid.angle        0.5 deg (one standard deviation)             99.8
     chamber.thickness   0.1 mm (one standard deviation)              0.2
     """
+    refuse_friction(muscle, "tolerances", "sweep() over some values of each number")
     numbers = scattering(muscle, test, vary, distribution)
     names = _results(muscle, test, of)
     if isinstance(samples, bool) or not isinstance(samples, int) or samples & (samples - 1):

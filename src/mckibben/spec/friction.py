@@ -11,7 +11,7 @@ from mckibben.spec.errors import SpecError
 from mckibben.spec.fields import quantity, spec
 from mckibben.units import Number, is_traced
 
-__all__ = ["Friction", "check_friction"]
+__all__ = ["Friction", "check_friction", "held_to_mesh"]
 
 _SOURCE = "theory page, friction at the crossings"
 _SLIDES = "theory page, friction between chamber and mesh"
@@ -101,21 +101,23 @@ def check_friction(friction: Friction | None, diameter: Any, chamber: Chamber | 
     if friction is not None and diameter is None and _some(friction.coefficient):
         said = "needs the diameter of the fibres, which tells how they press on each other"
         raise SpecError("friction.coefficient", friction.coefficient, said, "give braid.fibre.diameter")
-    if friction is None or friction.chamber_coefficient is None:
-        return
-    advice = "leave it out, or give a chamber inside: a tube with chamber.gap = true, or bellows"
+    if friction is not None and friction.chamber_coefficient is not None and (why := held_to_mesh(chamber)):
+        advice = "leave it out, or give a chamber that lies inside: a tube with chamber.gap = true, or bellows"
+        raise SpecError("friction.chamber_coefficient", friction.chamber_coefficient, why, advice)
+
+
+def held_to_mesh(chamber: Chamber | None) -> str:
+    """Why a chamber cannot slide along the mesh; nothing where it may."""
     if chamber is None:
-        said = "needs a chamber: a bare braid has none that could slide"
-        raise SpecError("friction.chamber_coefficient", friction.chamber_coefficient, said, advice)
+        return "needs a chamber: a bare braid has none that could slide"
     if not chamber.inside:
-        said = "needs a chamber inside the braid: the wall of this one lies around the fibres and goes with them"
-        raise SpecError("friction.chamber_coefficient", friction.chamber_coefficient, said, advice)
+        return "needs a chamber inside the braid: the wall of this one lies around the fibres and goes with them"
     if not chamber.gap and not isinstance(chamber.law, Bellows):
-        said = (
+        return (
             "needs chamber.gap = true: a tube that is held to the mesh pulls at it where a real one would leave it, "
             "and nothing says how it would slide there"
         )
-        raise SpecError("friction.chamber_coefficient", friction.chamber_coefficient, said, advice)
+    return ""
 
 
 def _some(value: Any) -> bool:

@@ -21,6 +21,8 @@ ROW = 0.55
 """Height [inch] of an effect with its bars."""
 BAR = 0.26
 """Height of a bar over that of a row."""
+ROUNDING = 1e-6
+"""Change in per cent below which there is none."""
 
 
 def bars(effects: Effects) -> Figure:
@@ -37,7 +39,7 @@ def bars(effects: Effects) -> Figure:
         axes.barh(np.arange(len(known)) + (k - 1) * BAR, values, height=0.9 * BAR, color=colour, label=label)
     for row, value in enumerate(known["force [%]"].tolist()):
         side = 1.0 if value >= 0.0 else -1.0
-        said = f"{value:+.2g} %".replace("-", "−")
+        said = "0 %" if abs(value) < ROUNDING else f"{value:+.2g} %".replace("-", "−")
         axes.text(value + side * 0.02 * largest, row - BAR, said, va="center", fontsize=style.NOTE + 0.5,
                   ha="left" if side > 0.0 else "right")  # fmt: skip
     axes.axvline(0.0, color=style.BLACK, linewidth=0.6)
