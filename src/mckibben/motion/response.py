@@ -73,7 +73,7 @@ def motion_response(
     ... )
     >>> found = mk.motion_response(rig, until="0.5 s", points=3)
     >>> found["pressure"].round(-3).tolist()  # Pa
-    [0.0, 83000.0, 145000.0]
+    [0.0, 39000.0, 76000.0]
     """
     if not isinstance(rig, Rig):
         said = "such as mk.Rig(muscle=..., load=..., supply=..., valve=...)"
