@@ -258,6 +258,14 @@ def test_joint_pid(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pyte
     assert swings == pytest.approx([4.82, 0.660], abs=0.011)
 
 
+def test_shape_a_command(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]) -> None:
+    off, _, speed, _ = printed("shape_a_command.py", tmp_path, monkeypatch, capsys)
+    assert off[:2] == pytest.approx([0.2, 1.86], abs=0.011)
+    assert off[2] <= 0.02
+    assert speed[0] == pytest.approx(22.5, abs=0.3)  # of the curve that is wanted: 15 / 8 of 6 mm in 0.5 s
+    assert (tmp_path / "out" / "shape_a_command.png").stat().st_size > 10_000
+
+
 def test_size_a_valve(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]) -> None:
     fill, vent, whole, half, fifth, _ = printed("size_a_valve.py", tmp_path, monkeypatch, capsys)
     assert fill == pytest.approx([0.137, 0.3, 34.8, 0.25], rel=5e-3)

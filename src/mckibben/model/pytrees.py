@@ -1,8 +1,8 @@
 """Spec objects as JAX pytrees: their numbers are leaves, everything else is static.
 
 So `jax.grad(lambda m: mk.response(m, test)["force"][-1])(muscle)` gives a muscle whose numbers are the derivatives. The
-leaves come in the order of `spec.numbers`. Nothing is read or checked when a tree is put together again, because JAX
-puts its own placeholders where numbers belong.
+leaves of muscles and tests come in the order of `spec.numbers`; a rig has those of its signals too. Nothing is read or
+checked when a tree is put together again, because JAX puts its own placeholders where numbers belong.
 """
 
 from collections.abc import Callable
@@ -17,7 +17,19 @@ from mckibben.spec.custom import Constants
 
 __all__ = ["made", "register"]
 
-CHILDREN = ("quantity", "count", "quantities", "part", "path", "held", "steps", "constants")
+CHILDREN = (
+    "quantity",
+    "count",
+    "quantities",
+    "part",
+    "path",
+    "held",
+    "steps",
+    "constants",
+    "signal",
+    "value",
+    "values",
+)
 """Kinds of declared fields that hold numbers, directly or further down."""
 
 Key = jax.tree_util.GetAttrKey

@@ -10,19 +10,33 @@ import attrs
 import numpy as np
 
 from mckibben.motion.commands import Commands
-from mckibben.motion.modes import Ended, after, margins
+from mckibben.motion.kinks import divided, marks_of
+from mckibben.motion.modes import Ended, after, margin, margins
 from mckibben.motion.plant import Plant
-from mckibben.motion.regime import Rates, Regime
+from mckibben.motion.regime import Mode, Rates, Regime
 from mckibben.motion.start import Begun
 from mckibben.units import show
 
-__all__ = ["METHODS", "Driven", "drive"]
+__all__ = ["METHODS", "Driven", "Stretch", "drive"]
 
 METHODS = ("LSODA", "Radau", "BDF", "RK45", "DOP853")
 """SciPy's solvers that may be asked for."""
 CHATTER, SOON = 200, 1e-7
 """As many changes of mode within as short a time [of the whole] end a simulation."""
 MOST_STEPS = 2_000_000
+NEAR = 1e-3
+"""Part of a step by which rates of margins are differenced."""
+
+
+@attrs.define
+class Stretch:
+    """A part of a motion in one mode and without a jump: what derivatives of the motion go along."""
+
+    mode: Mode
+    times: list[float]  #: its beginning, and where each step of the solver ended; parts of steps between kinks
+    flows: list[tuple[int, ...]] = attrs.Factory(list)  #: how air flows in each of them
+    ended: Ended | None = None  #: what ended its mode; None where a jump or the end of the motion did
+    rate: float = 0.0  #: how fast the margin fell through 0 there; 0 where it was below from the beginning
 
 
 @attrs.define
@@ -34,6 +48,7 @@ class Driven:
     seen: list[Rates] = attrs.Factory(list)
     modes: list[str] = attrs.Factory(list)
     events: list[tuple[float, str]] = attrs.Factory(list)
+    stretches: list[Stretch] = attrs.Factory(list)
     steps: int = 0
     looked: int = 0
     reason: str = ""
@@ -46,8 +61,12 @@ def drive(
     method: str,
     tolerance: float,
     watch: Callable[[int, int], None],
+    kinks: bool = False,
 ) -> Driven:
-    """A rig from its start at the first of the times to the last of them, looked at at each."""
+    """A rig from its start at the first of the times to the last of them, looked at at each.
+
+    With `kinks` its stretches are kept, divided where rates have a kink; nothing else is changed by it.
+    """
     import scipy.integrate
 
     solver_class = getattr(scipy.integrate, method)
@@ -77,6 +96,10 @@ def drive(
         while t < end:
             solver = solver_class(rates, t, np.array(y), end, rtol=tolerance, atol=small, max_step=most)
             ended: Ended | None = None
+            stretch = Stretch(regime.mode, [t])
+            if kinks:
+                done.stretches.append(stretch)
+            signs = marks_of(regime, t, y) if kinks else []
             while solver.status == "running" and ended is None:
                 said = solver.step()
                 done.steps += 1
@@ -88,8 +111,16 @@ def drive(
                 ended = _ended(regime, now, reached)
                 if ended is not None:
                     smooth = solver.dense_output()
-                    reached, ended = _when(regime, smooth, ended, last, reached)
+                    reached, ended, crossed = _when(regime, smooth, ended, last, reached)
                     now = smooth(reached).tolist()
+                    stretch.ended = ended
+                    if kinks and crossed:
+                        stretch.rate = _falling(regime, ended, reached, now, float(solver.t) - last)
+                if kinks:
+                    before, signs = signs, marks_of(regime, reached, now)
+                    parts = divided(regime, solver.dense_output(), last, reached, before, signs)
+                    stretch.times += [end for end, _ in parts]
+                    stretch.flows += [flows for _, flows in parts]
                 while next_at < len(asked) and asked[next_at] <= reached + 1e-12 * until:
                     smooth = smooth or solver.dense_output()
                     keep(asked[next_at], now if asked[next_at] >= reached else smooth(asked[next_at]).tolist())
@@ -125,15 +156,15 @@ def _changes(plant: Plant) -> bool:
     return plant.slackens or plant.friction > 0.0 or plant.stops != (None, None)
 
 
-def _when(regime: Regime, smooth: Any, ended: Ended, last: float, reached: float) -> tuple[float, Ended]:
-    """When a mode ended within a step, and by what: the first of those that ended in it."""
+def _when(regime: Regime, smooth: Any, ended: Ended, last: float, reached: float) -> tuple[float, Ended, bool]:
+    """When a mode ended within a step, and by what: the first of those that ended in it; and whether within it."""
     from scipy.optimize import brentq
 
     def left(ended: Ended, t: float) -> float:
         margin = margins(regime, t, smooth(t).tolist()).get(ended, math.inf)
         return margin if math.isfinite(margin) else 1.0
 
-    times = {}
+    times, crossed = {}, set()
     over = [one for one, margin in margins(regime, reached, smooth(reached).tolist()).items() if margin < 0.0]
     for one in over or [ended]:
         if left(one, reached) >= 0.0:
@@ -142,8 +173,20 @@ def _when(regime: Regime, smooth: Any, ended: Ended, last: float, reached: float
             times[one] = last
         else:
             times[one] = float(brentq(lambda t, one=one: left(one, t), last, reached, xtol=1e-13, rtol=1e-14))
+            crossed.add(one)
     first = min(times, key=lambda one: times[one])
-    return times[first], first
+    return times[first], first, first in crossed
+
+
+def _falling(regime: Regime, ended: Ended, t: float, y: list[float], step: float) -> float:
+    """The rate of a margin along the motion, by a central difference."""
+    small, slopes = NEAR * step, regime.rates(t, y).state
+
+    def at(dt: float) -> float:
+        there = [one + dt * slope for one, slope in zip(y, slopes, strict=True)]
+        return float(margin(regime.plant, ended, regime.mode, there, regime.rates(t + dt, there)))
+
+    return (at(small) - at(-small)) / (2.0 * small)
 
 
 def _woken(regime: Regime, t: float, y: list[float], done: Driven) -> tuple[Regime, list[float]]:
@@ -151,8 +194,9 @@ def _woken(regime: Regime, t: float, y: list[float], done: Driven) -> tuple[Regi
     if regime.mode.moves == "free" or regime.plant.rig.fixed:
         return regime, y
     found = regime.rates(t, y)
-    for ended, margin in margins(regime, t, y).items():
-        if margin < 0.0 and ended[0] in ("slip", "leave"):
+    for ended, left in margins(regime, t, y).items():
+        if left < 0.0 and ended[0] in ("slip", "leave"):
+            done.stretches.append(Stretch(regime.mode, [t, t], ended=ended))
             mode, y, told = after(regime, y, ended, found)
             regime = attrs.evolve(regime, mode=mode)
             done.events.append((t, told))

@@ -11,10 +11,10 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from mckibben.motion.drive import Driven
-from mckibben.motion.flow import GAMMA, NORMAL
+from mckibben.motion.energies import of_muscles, of_rig
 from mckibben.motion.mapped import Mapped
 from mckibben.motion.plant import Plant
-from mckibben.motion.regime import FIRST, PER, Seen
+from mckibben.motion.regime import Seen
 from mckibben.results.motion import HANGING, OF_MUSCLES, OF_RIG, TURNING, Motion
 from mckibben.spec.loads import FixedEnd, Load
 from mckibben.spec.rigtext import rig_to_toml
@@ -38,7 +38,7 @@ def recorded(plant: Plant, done: Driven, method: str, tolerance: float) -> Motio
     seen = {
         name: np.array([[getattr(one, name) for one in rates.muscles] for rates in done.seen]) for name in Seen._fields
     }
-    muscles = _of_muscles(plant, y, seen)
+    muscles = {name: np.array(values) for name, values in of_muscles(plant, y, seen).items()}
     variables: dict[str, Any] = {}
     several = plant.n > 1
     dims = ("time", "muscle") if several else ("time",)
@@ -48,7 +48,8 @@ def recorded(plant: Plant, done: Driven, method: str, tolerance: float) -> Motio
     for name, meaning in (("inside", "whether the map is good there"), ("slack", "whether its cable is slack")):
         values = seen[name].astype(bool)
         variables[name] = (dims, values if several else values[:, 0], {"long_name": meaning})
-    for name, values in _of_rig(plant, y, muscles).items():
+    for name, values in of_rig(plant, y, muscles).items():
+        values = np.array(values)
         unit, meaning = (OF_RIG | TURNING | HANGING)[name]
         variables[name] = (("time",), values, {"units": unit, "long_name": meaning})
     variables["moves"] = (
@@ -68,40 +69,6 @@ def _dataset(variables: dict[str, Any], coords: dict[str, Any], about: dict[str,
     import xarray as xr  # here, because it takes half a second to import
 
     return xr.Dataset(variables, coords, about)
-
-
-def _of_muscles(plant: Plant, y: np.ndarray, seen: dict[str, np.ndarray]) -> dict[str, np.ndarray]:
-    """The variables of the muscles, (time, muscle) each."""
-    parts = y[:, FIRST : FIRST + PER * plant.n].reshape(len(y), plant.n, PER)
-    inside = dict(
-        zip(("mass_in", "mass_out", "enthalpy", "heat", "work"), np.moveaxis(parts[:, :, 4:9], 2, 0), strict=True)
-    )
-    found = {name: seen[name].astype(float) for name in OF_MUSCLES if name in seen} | inside
-    found["pressure_absolute"] = parts[:, :, 0]
-    found["internal"] = parts[:, :, 0] * seen["volume"] / (GAMMA - 1.0)
-    return {name: np.array(values) for name, values in found.items()}
-
-
-def _of_rig(plant: Plant, y: np.ndarray, muscles: dict[str, np.ndarray]) -> dict[str, np.ndarray]:
-    """The variables of the whole, energies from 0 at the start."""
-    x, v = y[:, 0], y[:, 1]
-
-    def since(values: np.ndarray) -> np.ndarray:
-        return np.asarray((values - values[0]).sum(axis=1))
-
-    found = {} if not plant.rig.turns else {"angle": x.copy(), "angular_speed": v.copy()}
-    if plant.slackens and not plant.rig.turns:
-        found["position"] = x.copy()
-    found["kinetic"] = 0.5 * plant.mass * v**2
-    found["potential"] = -plant.weight * (x - x[0]) + 0.5 * plant.spring * (
-        (x - plant.rest) ** 2 - (x[0] - plant.rest) ** 2
-    )
-    found["lost"], found["pushed"] = y[:, 2].copy(), y[:, 3].copy()
-    found["consumed"] = 1e3 * muscles["mass_in"].sum(axis=1) / NORMAL
-    came = since(muscles["enthalpy"]) + since(muscles["heat"]) + found["pushed"]
-    there = since(muscles["internal"]) + since(muscles["stored"]) + plant.atmosphere * since(muscles["volume"])
-    found["balance"] = came - there - found["kinetic"] + found["kinetic"][0] - found["potential"] - found["lost"]
-    return found
 
 
 def _about(

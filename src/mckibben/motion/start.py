@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import attrs
 
@@ -27,7 +27,7 @@ class Begun(NamedTuple):
     mode: Mode
 
 
-def state_of(plant: Plant, x: float) -> list[float]:
+def state_of(plant: Plant, x: Any) -> list[Any]:
     """The state at rest at a place, without slack, at the pressures of the start."""
     rig = plant.rig
     y = [x, 0.0, 0.0, 0.0] + [0.0] * (PER * plant.n + len(plant.rubs))

@@ -10,7 +10,7 @@ from mckibben.spec.declared import Declared, Reads
 from mckibben.spec.errors import SpecError
 from mckibben.spec.fields import quantity, read_quantity, spec
 from mckibben.spec.plausible import CONTROLLED
-from mckibben.units import Number, show
+from mckibben.units import Number, is_traced, show
 
 __all__ = ["AIRS", "Isothermal", "Polytropic", "Supply", "Valve", "WallHeat", "temperature_field"]
 
@@ -69,12 +69,12 @@ class Supply:
         if self.gauge is None and self.absolute is None:
             raise SpecError("supply", allowed="has no pressure", advice=both)
 
-    def over(self, atmosphere: float) -> float:
+    def over(self, atmosphere: Number) -> Number:
         """Its absolute pressure [Pa]. SpecError where that is not above the atmosphere's [Pa]."""
         if self.gauge is not None:
             return self.gauge + atmosphere
         assert self.absolute is not None
-        if not self.absolute > atmosphere:
+        if not is_traced(self.absolute) and not is_traced(atmosphere) and not self.absolute > atmosphere:
             said = f"must be above the atmosphere, {show(atmosphere, 'Pa', 5)}: absolute pressures count from vacuum"
             raise SpecError("supply.absolute", show(self.absolute, "Pa"), said, "give gauge= if a manometer shows that")
         return self.absolute
@@ -140,7 +140,7 @@ class Valve:
         return 1.0 if ratio <= self.b else (1.0 - ((ratio - self.b) / (1.0 - self.b)) ** 2) ** 0.5
 
     @property
-    def venting(self) -> float:
+    def venting(self) -> Number:
         """Sonic conductance to the atmosphere [m^3/s/Pa]."""
         return self.C if self.vent is None else self.vent
 

@@ -12,7 +12,7 @@ from mckibben.spec.errors import SpecError
 from mckibben.spec.fields import quantity, spec, switch
 from mckibben.spec.plausible import CONTROLLED
 from mckibben.spec.signals import signal_field
-from mckibben.units import show
+from mckibben.units import Number, is_traced, show
 
 __all__ = ["LOADS", "FixedEnd", "Load", "Pulley", "Viscosity"]
 
@@ -30,8 +30,8 @@ def _angle(meaning: str) -> Any:
     return quantity("rad", meaning=meaning, low=-100.0, high=100.0, default=None)
 
 
-def _stops(owner: str, low: float | None, high: float | None, unit: str) -> None:
-    if low is not None and high is not None and not low < high:
+def _stops(owner: str, low: Number | None, high: Number | None, unit: str) -> None:
+    if low is not None and high is not None and not (is_traced(low) or is_traced(high)) and not low < high:
         said = f"must be above the other end, {show(low, unit)}"
         raise SpecError(f"{owner}.stop_high", show(high, unit), said)
 

@@ -15,7 +15,7 @@ from mckibben.spec.muscle import Muscle
 from mckibben.spec.plausible import CONTROLLED
 from mckibben.spec.signal import Signal
 from mckibben.spec.signals import SIGNALS, resolved
-from mckibben.units import show
+from mckibben.units import Number, is_traced, show
 
 __all__ = ["Rig"]
 
@@ -25,7 +25,7 @@ def _read_command(value: Any, field: str, declared: Declared) -> Any:
         return value
     if isinstance(value, Signal):
         return resolved(value, "1", field, -1.0, 1.0)
-    if isinstance(value, (int, float)) and not isinstance(value, bool):
+    if (isinstance(value, (int, float)) and not isinstance(value, bool)) or is_traced(value):
         from mckibben.spec.signal import Constant
 
         try:
@@ -126,12 +126,14 @@ class Rig:
                 raise SpecError("pid.of", "angle", "is that of a pulley", "hold the length instead")
         for name in ("pressure", "antagonist_pressure"):
             start = getattr(self, name)
-            if start is not None and start + self.atmosphere > self.supplied * (1.0 + 1e-9):
+            if start is None or any(is_traced(one) for one in (start, self.atmosphere, self.supplied)):
+                continue
+            if start + self.atmosphere > self.supplied * (1.0 + 1e-9):
                 said = f"must be at most that of the supply, {show(self.supplied - self.atmosphere, 'Pa', 5)} gauge"
                 raise SpecError(f"rig.{name}", show(start, "Pa"), said, "pressures of a muscle are gauge")
 
     @property
-    def supplied(self) -> float:
+    def supplied(self) -> Number:
         """Absolute pressure of the supply [Pa]."""
         assert self.supply is not None
         return self.supply.over(self.atmosphere)
@@ -148,7 +150,7 @@ class Rig:
         return (self.valve, self.antagonist_valve or self.valve)[: len(self.muscles)]
 
     @property
-    def pressures(self) -> tuple[float, ...]:
+    def pressures(self) -> tuple[Number, ...]:
         """Gauge pressure of each muscle at the start [Pa]."""
         second = self.pressure if self.antagonist_pressure is None else self.antagonist_pressure
         return (self.pressure, second)[: len(self.muscles)]
@@ -164,11 +166,11 @@ class Rig:
         return isinstance(self.load, Pulley)
 
     @property
-    def mass(self) -> float:
+    def mass(self) -> Number:
         """Mass [kg] or moment of inertia [kg m^2]; 0 where nothing moves."""
         return self.load.mass if isinstance(self.load, Load) else self.load.inertia if self.turns else 0.0
 
     @property
-    def exponent(self) -> float:
+    def exponent(self) -> Number:
         """Exponent n of the balance of energy of the air."""
         return self.air.n if isinstance(self.air, Polytropic) else HEAT_RATIO if isinstance(self.air, WallHeat) else 1.0

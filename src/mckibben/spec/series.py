@@ -10,7 +10,7 @@ from mckibben.spec.declared import Declared, Reads, declare
 from mckibben.spec.errors import SpecError
 from mckibben.spec.fields import choice, quantities, spec
 from mckibben.spec.signal import TINY, Signal, read_values
-from mckibben.units import show
+from mckibben.units import is_traced, show
 
 __all__ = ["Between", "Series"]
 
@@ -50,7 +50,7 @@ class Series(Signal):
             said = f"must be {len(self.time)} values, as many as there are times, not {len(self.value)}"
             raise SpecError("series.value", allowed=said)
         for k in range(1, len(self.time)):
-            if not self.time[k] > self.time[k - 1]:
+            if not any(is_traced(one) for one in self.time[k - 1 : k + 1]) and not self.time[k] > self.time[k - 1]:
                 said = f"must be after the time before, {show(self.time[k - 1], 's')}"
                 raise SpecError(f"series.time[{k}]", show(self.time[k], "s"), said)
 

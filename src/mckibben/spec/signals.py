@@ -11,7 +11,7 @@ from mckibben.spec.fields import quantity, spec
 from mckibben.spec.plausible import CONTROLLED, reading
 from mckibben.spec.series import Series
 from mckibben.spec.signal import TINY, Constant, Signal, read_value, time_field, value_field
-from mckibben.units import UnitError, show, to_si
+from mckibben.units import Number, UnitError, is_traced, show, to_si
 
 __all__ = ["PWM", "SIGNALS", "Jump", "Ramp", "Sine", "resolved", "signal_field"]
 
@@ -72,7 +72,7 @@ class Ramp(Signal):
     stop: Reads[float] = time_field("when it ends", default=1.0)
 
     def __attrs_post_init__(self) -> None:
-        if not self.stop > self.start:
+        if not is_traced(self.stop) and not is_traced(self.start) and not self.stop > self.start:
             said = f"must be after the beginning, {show(self.start, 's')}"
             raise SpecError("ramp.stop", show(self.stop, "s"), said, "or use a Jump")
 
@@ -179,18 +179,22 @@ def resolved(signal: S, unit: str, field: str, low: float = -math.inf, high: flo
             made[declared.name] = tuple(
                 _si(one, unit, f"{field}.{declared.name}[{k}]", low, high) for k, one in enumerate(value)
             )
-    if isinstance(signal, Sine):  # what must be in range is the sum
+    if isinstance(signal, Sine) and not any(
+        is_traced(one) for one in made.values()
+    ):  # what must be in range is the sum
         top = abs(made["amplitude"])
         for end in (made["mean"] - top, made["mean"] + top):
             _check(end, signal.amplitude, unit, f"{field}.amplitude", low, high)
     return evolved(signal, **made)
 
 
-def _si(value: Any, unit: str, field: str, low: float, high: float) -> float:
+def _si(value: Any, unit: str, field: str, low: float, high: float) -> Number:
     try:
-        number = float(to_si(value, unit))
+        number = to_si(value, unit)
     except UnitError as error:
         raise SpecError(field, value, str(error), error.advice) from error
+    if is_traced(number):
+        return number
     meant = reading([value], unit, CONTROLLED.get(unit))
     if meant:
         raise SpecError(field, value, "a number without a unit is in SI", meant)
@@ -208,7 +212,7 @@ def _check(number: float, value: Any, unit: str, field: str, low: float, high: f
 def _read_signal(value: Any, field: str, declared: Declared) -> Any:
     """A signal, or a number or text for a constant one, with its values in SI."""
     if not isinstance(value, Signal):
-        if isinstance(value, (str, int, float)) or hasattr(value, "magnitude"):
+        if isinstance(value, (str, int, float)) or hasattr(value, "magnitude") or is_traced(value):
             value = Constant(value)
         else:
             names = ", ".join(cls.__name__ for cls in SIGNALS.values())
