@@ -5,7 +5,8 @@
 What must hold of every state, whatever is switched on: forces and volumes are the slopes of one potential, W = U - P V
 with dW = F dh - V dP; the error estimate covers the difference to a finer solution of the same state; a muscle that is
 turned around has the mirrored state; and the state stays where the force that was found is held. Where the default call
-gives no stable state, the other methods of validation/judges.py seek one. Results go line by line to
+gives no stable state, the other methods of validation/judges.py seek one, and where they find none either the branch is
+followed by arclength to where it turns back. Results go line by line to
 out/random_options.jsonl; a run that was cut short goes on where it stopped. Writes validation/random_options.md.
 """
 
@@ -16,7 +17,7 @@ from pathlib import Path
 from typing import Any
 
 from environment import OUT
-from judges import judge_target
+from judges import judge_target, turns_back
 from options import EACH, SEED, case_of, drawn, has_profile
 from random_muscles import read, write_lines
 
@@ -75,6 +76,8 @@ def checked(case: dict[str, Any]) -> dict[str, Any]:
     bench, held = Bench.of(muscle), Held.of(length=length, pressure=pressure)
     if usual.verdict != "stable" or usual.modes is None:
         found["judges"] = judge_target(bench, held, case["id"])
+        if usual.verdict == "not converged" and not found["judges"]["reached"]:
+            found["branch"] = turns_back(bench, held)
         return found
     size = abs(usual.force) + np.pi * float(muscle.braid.radius) ** 2 * pressure
     b = bench.placement(held)
@@ -151,7 +154,8 @@ def _allowed(found: dict[str, Any]) -> float:
 def failures(row: dict[str, Any]) -> list[str]:
     """What is wrong with a case, in words."""
     found, said = row["found"], []
-    if found["verdict"] in ("crash", "not converged"):
+    gone = found["verdict"] == "not converged" and found.get("branch", {}).get("turned", False)
+    if found["verdict"] in ("crash", "not converged") and not gone:
         said.append(f"{found['verdict']}: {found['reason']}")
     better = [name for name, worth in found.get("judges", {}).get("worth", {}).items() if worth["stable"]]
     if better:
@@ -233,6 +237,14 @@ def report(rows: list[dict[str, Any]]) -> None:
             for row in others
         )
         lines += ["", f"Sought straight on {FINE[0]} unknowns, another equilibrium was found in the cases {which}."]
+    gone = [row for row in rows if row["found"].get("branch", {}).get("turned")]
+    if gone:
+        which = ", ".join(f"{row['case']['id']} ({row['found']['branch']['furthest']:.3f} of the way)" for row in gone)
+        lines += [
+            "",
+            "Not converged, and no other method found a state: followed by arclength the branch turns back before the "
+            f"target in the cases {which}.",
+        ]
     bad = [(row, failures(row)) for row in rows if failures(row)]
     lines += ["", f"{len(bad)} muscles with a check that failed."]
     if bad:
