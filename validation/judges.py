@@ -7,10 +7,12 @@ import numpy as np
 
 from mckibben.discretise.placement import crowding
 from mckibben.measure.judge import ADMISSIBLE
+from mckibben.search.elsewhere import way_there
 from mckibben.search.walk import look
+from mckibben.solver.arclength import branch
 from mckibben.solver.bench import Bench
 from mckibben.solver.equilibrium import Equilibrium
-from mckibben.solver.find import equilibrium, find, refine
+from mckibben.solver.find import embedded, equilibrium, find, refine
 from mckibben.solver.held import Held
 from mckibben.solver.path import trace
 from mckibben.solver.problem import Problem
@@ -18,6 +20,9 @@ from mckibben.solver.problem import Problem
 SIZE, FINE, STEPS, STARTS, RESOLVED = 48, 96, 24, 6, 1e-2
 """Half-length unknowns to search with and to judge with, states on each leg of a path, random starts, and the
 coefficient tail a state must have."""
+TOLERANCE, BEFORE, ALONG, FOLD = 1e-6, 0.99, 60, 1e-4
+"""Of the way whose end is followed by arclength: its error, how far of it the walk sets in, states at most, and by how
+much of the way the branch must have gone back to have turned."""
 
 
 def judge_target(bench: Bench, held: Held, seed: int) -> dict[str, Any]:
@@ -88,3 +93,28 @@ def worth_of(state: Equilibrium | None, held: Held) -> dict[str, Any]:
     why = f"{seen.verdict.reason}; tail {state.tail:.1e}" + (f"; {count} symmetric modes" if count else "")
     stable = good and not seen.modes.antisymmetric
     return {"good": good, "stable": stable, "why": why, "force": state.force, "length": state.length}
+
+
+def turns_back(bench: Bench, held: Held) -> dict[str, Any]:
+    """Whether the branch on which good states end turns back before the target, followed by arclength past its end.
+
+    `furthest` is the share of the way that it comes to. On `SIZE` unknowns, whatever the shapes.
+    """
+    problem = bench.problem(SIZE, placement(bench, held))
+    way = way_there(bench, held, problem.b, TOLERANCE, roughly=True)
+    if way is None or way.end.last is None or not way.end.fraction:
+        return {"turned": False, "furthest": 0.0, "why": "no good state on the way"}
+    first, end = (np.array(one.values) for one in (way.first, way.end.held))
+    target = Held(held.names, tuple((first + (end - first) / way.end.fraction).tolist()))
+    start = way.first.towards(target, BEFORE * way.end.fraction)
+    here = find(problem, start, embedded(way.end.last.state, problem), 0.3)
+    if not here.converged:
+        return {"turned": False, "furthest": way.end.fraction, "why": "no state shortly before its end"}
+    track = branch(problem, here, [start.towards(target, k / ALONG) for k in range(ALONG + 1)])
+    varied = int(np.argmax(np.abs(end - first)))
+    gone = []
+    for state in map(track.state, range(track.reached)):
+        at = (state.length if held.names[varied] == "length" else state.force, state.pressure)[varied]
+        gone.append(float((at - first[varied]) / (np.array(target.values) - first)[varied]))
+    most = max(gone)
+    return {"turned": most < 1.0 and gone[-1] < most - FOLD, "furthest": most, "why": track.message}

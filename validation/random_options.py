@@ -3,10 +3,11 @@
     python validation/random_options.py [--count 300] [--first 0] [--report-only]
 
 What must hold of every state, whatever is switched on: forces and volumes are the slopes of one potential, W = U - P V
-with dW = F dh - V dP; the error estimate covers the difference to a finer solution; a muscle that is turned around has
-the mirrored state; and the state stays where the force that was found is held. Where the default call gives no stable
-state, the other methods of validation/judges.py seek one. Results go line by line to out/random_options.jsonl; a run
-that was cut short goes on where it stopped. Writes validation/random_options.md.
+with dW = F dh - V dP; the error estimate covers the difference to a finer solution of the same state; a muscle that is
+turned around has the mirrored state; and the state stays where the force that was found is held. Where the default call
+gives no stable state, the other methods of validation/judges.py seek one, and where they find none either the branch is
+followed by arclength to where it turns back. Results go line by line to
+out/random_options.jsonl; a run that was cut short goes on where it stopped. Writes validation/random_options.md.
 """
 
 import argparse
@@ -16,7 +17,7 @@ from pathlib import Path
 from typing import Any
 
 from environment import OUT
-from judges import judge_target
+from judges import judge_target, turns_back
 from options import EACH, SEED, case_of, drawn, has_profile
 from random_muscles import read, write_lines
 
@@ -25,15 +26,18 @@ os.environ.setdefault("MCKIBBEN_COMPILE", "quick")
 import numpy as np
 
 import mckibben as mk
+from mckibben.experiments.answer import seek
+from mckibben.search.finer import estimated_error
+from mckibben.search.walk import look
 from mckibben.solver.bench import Bench
 from mckibben.solver.equilibrium import Equilibrium
 from mckibben.solver.find import find, refine
 from mckibben.solver.held import Held
 
 FILE, PAGE = OUT / "random_options.jsonl", Path(__file__).with_name("random_options.md")
-FINE = (64, 128)
-"""Half-length unknowns of the states that judge; the larger number where the tail of the coefficients, which tells
-their own error, is too large on the smaller to judge by."""
+FINE = (64, 128, 256)
+"""Half-length unknowns of the states that judge: as many as it takes until what is estimated of their own error is
+below what they judge."""
 LIMIT = 600
 """Seconds of the processor that a case may take, compiling included."""
 STEP = 1e-4
@@ -41,6 +45,8 @@ STEP = 1e-4
 SLOPES, MIRROR, BACK = 1e-6, 1e-7, 1e-7
 """How far each check may be off, over |F| + pi R0^2 P for forces, and over the length or volume."""
 ROUNDING = 1e-10
+TOLERANCE = 1e-6
+"""That of the default call."""
 
 
 def one(case: dict[str, Any]) -> dict[str, Any]:
@@ -70,17 +76,24 @@ def checked(case: dict[str, Any]) -> dict[str, Any]:
     bench, held = Bench.of(muscle), Held.of(length=length, pressure=pressure)
     if usual.verdict != "stable" or usual.modes is None:
         found["judges"] = judge_target(bench, held, case["id"])
+        if usual.verdict == "not converged" and not found["judges"]["reached"]:
+            found["branch"] = turns_back(bench, held)
         return found
+    size = abs(usual.force) + np.pi * float(muscle.braid.radius) ** 2 * pressure
     b = bench.placement(held)
-    fine = best = find(bench.problem(FINE[0], b), held)
-    found["fine"], found["size"] = fine.converged, FINE[0]
+    fine = find(bench.problem(FINE[0], b), held)
+    found["fine"] = fine.converged
     if not fine.converged:
         return found
-    if fine.tail**1.5 > max(found["estimate"], ROUNDING):
-        best, found["size"] = refine(fine, bench.problem(FINE[1], b), held), FINE[1]
+    straight = seek(bench, held, TOLERANCE).state
+    same = abs(straight.force - usual.force) <= ROUNDING * size  # unless it was found on the way or from another start
+    best, found["size"], found["own"] = _finer(bench, held, straight if same else fine, found["estimate"])
     found["fine"] = best.converged
-    size = abs(usual.force) + np.pi * float(muscle.braid.radius) ** 2 * pressure
-    found["error"], found["tail"] = abs(usual.force - best.force) / size, best.tail
+    found["error"] = abs(usual.force - best.force) / size if best.converged else float("inf")
+    apart = abs(fine.force - best.force) / size
+    if best.converged and apart > found["own"] + max(estimated_error(fine, held), ROUNDING):
+        seen = look(fine, held)
+        found["other"] = {"apart": apart, "stable": seen.good, "reason": seen.verdict.reason}
     found["slope_length"] = abs(_slope(fine, held, 0) - fine.force) / size
     found["slope_pressure"] = abs(_slope(fine, held, 1) + fine.volume) / fine.volume
     if len(muscle.end_radii or ()) == 2:
@@ -91,6 +104,22 @@ def checked(case: dict[str, Any]) -> dict[str, Any]:
         back = find(fine.problem, Held.of(force=fine.force, pressure=pressure), fine, radius=0.1)
         found["back"] = abs(back.length - length) / length if back.converged else float("inf")
     return found
+
+
+def _finer(bench: Bench, held: Held, state: Equilibrium, estimate: float) -> tuple[Equilibrium, int, float]:
+    """The same state on more unknowns than it has, how many, and what is estimated of its error there."""
+    best, size, own = state, 0, float("inf")
+    for size in FINE:
+        problem = bench.problem(size, state.problem.b)
+        if problem.basis.size <= state.problem.basis.size and size < FINE[-1]:
+            continue
+        best = refine(best, problem, held)
+        if not best.converged:
+            break
+        own = estimated_error(best, held)
+        if own <= max(estimate, ROUNDING):
+            break
+    return best, size, own
 
 
 def _slope(at: Equilibrium, held: Held, which: int) -> float:
@@ -117,17 +146,23 @@ CHECKS = {
 }
 
 
+def _allowed(found: dict[str, Any]) -> float:
+    """How far a state may be from its finer one: what was estimated of the one, and if that is more of the other."""
+    return float(max(found["estimate"], found["own"], ROUNDING))
+
+
 def failures(row: dict[str, Any]) -> list[str]:
     """What is wrong with a case, in words."""
     found, said = row["found"], []
-    if found["verdict"] in ("crash", "not converged"):
+    gone = found["verdict"] == "not converged" and found.get("branch", {}).get("turned", False)
+    if found["verdict"] in ("crash", "not converged") and not gone:
         said.append(f"{found['verdict']}: {found['reason']}")
     better = [name for name, worth in found.get("judges", {}).get("worth", {}).items() if worth["stable"]]
     if better:
         said.append(f"{found['verdict']} by the default call; stable by {', '.join(better)}")
     if found["verdict"] == "stable" and not found.get("fine"):
         said.append("no state on more unknowns")
-    if "error" in found and found["error"] > max(found["estimate"], found["tail"] ** 1.5, ROUNDING):
+    if "error" in found and found["error"] > _allowed(found):
         said.append(f"the error {found['error']:.1e} is above the estimate {found['estimate']:.1e}")
     for name, (what, limit) in CHECKS.items():
         off = found.get(name, 0.0)
@@ -171,7 +206,7 @@ def report(rows: list[dict[str, Any]]) -> None:
         "| --- | --- | --- | --- | --- | --- |",
     ]
     errors = [row["found"] for row in rows if "error" in row["found"]]
-    ratio = np.array([one["error"] / max(one["estimate"], one["tail"] ** 1.5, ROUNDING) for one in errors])
+    ratio = np.array([one["error"] / _allowed(one) for one in errors])
     lines.append(
         f"| error over its estimate | {len(ratio)} | {np.median(ratio):.1e} | {ratio.max():.1e} | 1 | "
         f"{int((ratio > 1.0).sum())} |"
@@ -187,12 +222,29 @@ def report(rows: list[dict[str, Any]]) -> None:
         for word in words(row["case"]["options"]).split(", "):
             on[word] = on.get(word, 0) + 1
     lines += ["", "How often each option was there: " + ", ".join(f"{k} {n}" for k, n in sorted(on.items())) + "."]
-    blunt = sum(one["tail"] ** 1.5 > max(one["estimate"], ROUNDING) for one in errors)
+    blunt = sum(one["own"] > max(one["estimate"], ROUNDING) for one in errors)
     lines += [
         "",
-        f"The finer solution has {FINE[0]} unknowns for each half, and {FINE[1]} where its own error, told by the tail "
-        f"of its coefficients, is above the estimate; of {blunt} states it still is, and counts in its place.",
+        f"The finer solution is the same state, refined to {FINE[0]} unknowns for each half, and to {FINE[1]} and "
+        f"{FINE[2]} where its own estimated error is above the estimate that it judges; of {blunt} states it still is, "
+        "and counts in its place.",
     ]
+    others = [row for row in rows if "other" in row["found"]]
+    if others:
+        which = ", ".join(
+            f"{row['case']['id']} ({row['found']['other']['apart']:.0e} of the load away, "
+            f"{'stable too' if row['found']['other']['stable'] else 'unstable'})"
+            for row in others
+        )
+        lines += ["", f"Sought straight on {FINE[0]} unknowns, another equilibrium was found in the cases {which}."]
+    gone = [row for row in rows if row["found"].get("branch", {}).get("turned")]
+    if gone:
+        which = ", ".join(f"{row['case']['id']} ({row['found']['branch']['furthest']:.3f} of the way)" for row in gone)
+        lines += [
+            "",
+            "Not converged, and no other method found a state: followed by arclength the branch turns back before the "
+            f"target in the cases {which}.",
+        ]
     bad = [(row, failures(row)) for row in rows if failures(row)]
     lines += ["", f"{len(bad)} muscles with a check that failed."]
     if bad:

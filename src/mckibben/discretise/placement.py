@@ -31,7 +31,7 @@ def crowdings(p: Parameters, length: Array, force: Array, pressure: Array) -> Fl
     def one(length: Array, force: Array, pressure: Array) -> Array:
         forces = jax.vmap(lambda theta: cylinder_force(theta, pressure, p))(angles)
         by_length = jnp.abs(cylinder_length(angles, p) - length)
-        by_force = jnp.abs(forces - force)
+        by_force = jnp.where(jnp.isnan(forces), jnp.inf, jnp.abs(forces - force))  # no cylinder whose bore is closed
         best = jnp.argmin(jnp.where(jnp.isnan(length), by_force, by_length))
         return _crowding(angles[best], jnp.where(jnp.isnan(force), forces[best], force), pressure, p)
 
@@ -55,6 +55,7 @@ def _angles() -> Array:
 
 
 def _crowding(theta: Array, pull: Array, pressure: Array, p: Parameters) -> Array:
+    pull = jnp.where(jnp.isnan(pull), 0.0, pull)  # of a cylinder whose bore is closed
     layer = end_layer(theta, pull + jnp.pi * radius(Point.cylinder(theta), p) ** 2 * pressure, p)
     return jnp.clip(0.5 * jnp.log(p.H0 / (3.0 * layer)), UNIFORM, STEEPEST)
 

@@ -21,6 +21,8 @@ __all__ = ["UNSTABLE", "Answer", "answer", "seek"]
 COARSE = 24
 """Unknowns with which the pressure that would hold a length is looked for: it is told to three digits."""
 
+UNITS = {"length": "m", "volume": "m^3", "force": "N", "pressure": "Pa"}
+
 UNSTABLE = "an unstable state of another shape"
 """In a reason: a symmetric state that tips to one side, found from another start than rest."""
 
@@ -100,7 +102,8 @@ def _instead(bench: Bench, held: Held, found: Look, way: Way | None, instead: El
     verdict = found.verdict.verdict
     if way is None:
         return Answer(None, verdict, found.verdict.reason)
-    verdict = Verdict.INADMISSIBLE if verdict == Verdict.INADMISSIBLE else Verdict.NOT_CONVERGED
+    inadmissible = Verdict.INADMISSIBLE in (verdict, way.end.cause.verdict)
+    verdict = Verdict.INADMISSIBLE if inadmissible else Verdict.NOT_CONVERGED
     lacks = f"no {'stable' if symmetric else 'admissible'} state was found at {_said(held)}"
     more = _tried(instead) + _holds(bench, held) if tried is None else tried
     return Answer(None, verdict, f"{lacks}: {_ending(way)}{more}", way=way)
@@ -120,10 +123,10 @@ def _unstable(symmetric: Look, found: Look, way: Way | None, instead: Else) -> A
 
 def _ending(way: Way) -> str:
     """Where the good states on the way to a target end, and why."""
-    axial, unit = ("length", "m") if "length" in way.first.names else ("force", "N")
     if way.end.last is None:
         return f"there is no good state at {_said(way.first)}, where {way.end.cause.reason}"
-    at = show(way.end.held.get(axial), unit, 5)
+    varied = [k for k, value in enumerate(way.end.held.values) if value != way.first.values[k]] or [0]
+    at = show(way.end.held.values[varied[0]], UNITS[str(way.end.held.names[varied[0]])], 5)
     return f"from {_said(way.first)} good states end at {at}, where {way.end.cause.reason}"
 
 
@@ -144,5 +147,4 @@ def _holds(bench: Bench, held: Held) -> str:
 
 
 def _said(held: Held) -> str:
-    units = {"length": "m", "volume": "m^3", "force": "N", "pressure": "Pa"}
-    return " and ".join(show(value, units[name], 5) for name, value in zip(held.names, held.values, strict=True))
+    return " and ".join(show(value, UNITS[name], 5) for name, value in zip(held.names, held.values, strict=True))

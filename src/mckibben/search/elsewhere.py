@@ -11,7 +11,7 @@ from mckibben.search.starts import starts
 from mckibben.search.walk import BranchEnd, Look, branch_end, look
 from mckibben.solver.bench import LADDER, Bench
 from mckibben.solver.equilibrium import Equilibrium
-from mckibben.solver.find import find
+from mckibben.solver.find import embedded, find
 from mckibben.solver.held import Held
 
 SEARCH = LADDER[1]
@@ -22,7 +22,11 @@ REFINED = tuple(zip(LADDER, (1e-5, 1e-8, 1e-8, 1e-8), strict=True))
 
 @attrs.frozen
 class Way:
-    """Pressure first, then from the initial length, or from no force, to the target: its start and its end."""
+    """A way to the target: its start and its end, as far as its states are good. Of several the one that leads there.
+
+    Pressure first, then from the initial length, or from no force, to the target; where there is no good state at that
+    start, up to it by the pressure; where none is at rest either, at the target's length by the pressure.
+    """
 
     first: Held
     end: BranchEnd
@@ -39,21 +43,44 @@ class Else:
 
 
 def way_there(bench: Bench, held: Held, b: float, tolerance: float, roughly: bool = False) -> Way | None:
-    """The way to a target, as far as its states are good; None where the pressure is not held.
+    """The way to a target, as far as its states are good (see `Way`); None where the pressure is not held.
 
     On more unknowns until the last good state is good to the tolerance, or `roughly` on the fewest.
     """
     axial = next((name for name in ("length", "force") if name in held.names), None)
     if axial is None or "pressure" not in held.names:
         return None
-    first = Held.of(**{axial: float(bench.p.rest) if axial == "length" else 0.0, "pressure": held.get("pressure")})
+    pressure, rest = held.get("pressure"), float(bench.p.rest) if axial == "length" else 0.0
+    first = Held.of(**{axial: rest, "pressure": pressure})
+
+    def way(start: Held, target: Held, begin: Equilibrium | None = None) -> Way:
+        return Way(start, _end(bench, start, target, b, tolerance, roughly, begin))
+
+    straight = way(first, held)
+    if straight.end.last is not None or not pressure:
+        return straight
+    rises = way(Held.of(**{axial: rest, "pressure": 0.0}), first)
+    if rises.end.complete and rises.end.last is not None:
+        return way(first, held, rises.end.last.state)
+    there = way(Held.of(**{axial: held.get(axial), "pressure": 0.0}), held)
+    if there.end.complete or rises.end.last is None:
+        return straight if there.end.last is None else there
+    return rises
+
+
+def _end(
+    bench: Bench, start: Held, target: Held, b: float, tolerance: float, roughly: bool, begin: Equilibrium | None
+) -> BranchEnd:
+    """Where good states on the straight way end, on as many unknowns as the last of them needs."""
     end: BranchEnd | None = None
     for size, share in REFINED:
-        end = branch_end(bench.problem(size, b), first, held, share, coarse=end)
-        if roughly or (size >= SEARCH and (end.last is None or estimated_error(end.last.state, held) <= tolerance)):
+        problem = bench.problem(size, b)
+        near = None if begin is None else embedded(begin, problem)
+        end = branch_end(problem, start, target, share, coarse=end, begin=near)
+        if roughly or (size >= SEARCH and (end.last is None or estimated_error(end.last.state, target) <= tolerance)):
             break
     assert end is not None
-    return Way(first, end)
+    return end
 
 
 def look_elsewhere(bench: Bench, held: Held, found: Look, way: Way | None, tolerance: float) -> Else:

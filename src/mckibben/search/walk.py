@@ -1,10 +1,11 @@
-"""Where a path of states ends, and why: stability lost, the wall behind its fitting, or contact with itself."""
+"""Where a path of states ends, and why: stability lost, the wall behind its fitting, contact with itself, no bore."""
 
 import math
 
 import attrs
 import numpy as np
 
+from mckibben.measure.bore import narrowest_bore
 from mckibben.measure.judge import Judgement, clearance, judge, shape_of
 from mckibben.measure.meridian import meridian
 from mckibben.model.extension import longest_of
@@ -23,6 +24,10 @@ STEPS = 16
 """Steps from one end of a path to the other at first."""
 JUMP = 0.6
 """Change of psi [rad] that a step may make and be trusted to stay on the branch."""
+
+CLOSED = 0.05
+"""Bore over the outer face at the end of a path, below which that is where it closes: it does so as a square root."""
+FULL = "the bore of the tube closes, and the rubber lets the braid narrow no further"
 
 FOLD = 1e-4
 """How far before a maximum of the force its last good state lies, over the path: at the maximum itself the length is
@@ -211,8 +216,12 @@ def _advance(
 def _beyond(walk: _Walk, first: Look, here: Look, done: float) -> Judgement:
     """What ended a path with nothing near beyond its last state.
 
-    A branch that has gone soft turns back; otherwise the verdict on what the search finds a little further on.
+    A tube without a bore lets the braid narrow no further; a branch that has gone soft turns back; otherwise the
+    verdict on what the search finds a little further on.
     """
+    state = here.state
+    if narrowest_bore(walk.problem, state.u, state.loads) < CLOSED:
+        return Judgement(Verdict.INADMISSIBLE, FULL, here.verdict.shape)
     if here.stiffness > 1e-2 * first.stiffness:
         seen = walk.trial(min(1.0, done + 1e-2 / STEPS), here.state, np.inf)
         if not walk.good(seen):

@@ -20,6 +20,9 @@ Floats = NDArray[np.floating[Any]]
 FLOOR = 1e-3
 """What an imbalance is held against where every term vanishes, as at rest: a small share of the energy unit."""
 
+HUGE = 1e50
+"""Size of a gradient, in units of the energy, beyond which no state is: a search that runs away there turns back before
+squares overflow."""
 
 ROUNDING = 1e-15
 """A residual that no further step makes smaller."""
@@ -142,7 +145,7 @@ class _Point:
         if not task.admissible(d.theta):
             return None
         totals, gradients = np.asarray(d.totals), np.asarray(d.gradients) @ inverse
-        if not np.isfinite(gradients).all():
+        if not (np.abs(gradients) < HUGE).all():  # nor where they are no numbers
             return None
         held = list(task.held)
         free = [k for k in range(1, len(totals)) if k not in held]
@@ -240,7 +243,8 @@ def polish(task: Task, u: Floats, loads: Floats, tolerance: float, count: int, l
         totals, gradients = np.asarray(d.totals), np.asarray(d.gradients)
         signs = np.concatenate([[1.0], -loads[1:]])
         rest, c = signs @ gradients, totals[held] - task.targets
-        residual = max(imbalance(signs, gradients), float(np.abs(c).max(initial=0.0)))
+        defined = bool((np.abs(gradients) < HUGE).all())
+        residual = max(imbalance(signs, gradients), float(np.abs(c).max(initial=0.0))) if defined else np.inf
         if best is None or residual < best.residual:
             best = Minimum(u, loads.copy(), residual < tolerance, residual, count + k, "converged", totals)
             if residual < ROUNDING:
