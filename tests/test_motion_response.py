@@ -22,7 +22,7 @@ from mckibben.motion.kinks import flows_of
 from mckibben.motion.plant import Plant
 from mckibben.motion.regime import FIRST, PER, Mode, Regime
 from mckibben.motion.start import state_of
-from mckibben.motion.traced import TracedMap, TracedMode, TracedRegime
+from mckibben.motiongradients.traced import TracedMap, TracedMode, TracedRegime
 from mckibben.potential.evaluate import ORDERS, Table, in_blocks
 from mckibben.potential.scalar import scalar
 

@@ -52,7 +52,7 @@ _PUBLIC = {
     "mckibben.designing.answer": ("Design",),
     "mckibben.motion.simulate": ("simulate", "simulate_many"),
     "mckibben.motion.rigfile": ("read_rig", "read_signal"),
-    "mckibben.motion.response": ("motion_response",),
+    "mckibben.motiongradients.response": ("motion_response",),
     "mckibben.motion.steps": ("per_cycle", "step_response"),
     "mckibben.motion.linear": ("bode",),
     "mckibben.motion.sizing": ("size_valve",),

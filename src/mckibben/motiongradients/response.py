@@ -10,17 +10,17 @@ from jaxtyping import Float
 
 from mckibben.compiled.arrays import Array
 from mckibben.compiled.kernel import kernel
-from mckibben.motion.along import Way, along
 from mckibben.motion.energies import of_muscles, of_rig
-from mckibben.motion.known import Asked, Known, concrete, kept_by, known
 from mckibben.motion.maps import maps_of
-from mckibben.motion.moments import commanding, sources_of
 from mckibben.motion.plant import Plant, apart
 from mckibben.motion.regime import Seen
-from mckibben.motion.rows import kinds_of
 from mckibben.motion.simulate import check_options, read_time
-from mckibben.motion.starting import started
-from mckibben.motion.traced import TracedMap
+from mckibben.motiongradients.along import Way, along
+from mckibben.motiongradients.known import Asked, Known, concrete, kept_by, known
+from mckibben.motiongradients.moments import commanding, sources_of
+from mckibben.motiongradients.rows import kinds_of
+from mckibben.motiongradients.starting import started
+from mckibben.motiongradients.traced import TracedMap
 from mckibben.potential.evaluate import Table
 from mckibben.spec.controls import Controller
 from mckibben.spec.errors import SpecError

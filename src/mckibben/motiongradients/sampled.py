@@ -6,9 +6,9 @@ from typing import Any, NamedTuple
 
 import jax.numpy as jnp
 
-from mckibben.motion.moments import Source, commanding, value
 from mckibben.motion.regime import Seen
-from mckibben.motion.rows import Rows
+from mckibben.motiongradients.moments import Source, commanding, value
+from mckibben.motiongradients.rows import Rows
 from mckibben.spec.controls import PID, Controlled
 from mckibben.spec.rig import Rig
 from mckibben.spec.signal import TINY

@@ -12,14 +12,14 @@ from typing import Any, NamedTuple
 import jax
 import numpy as np
 
-from mckibben.motion.along import Way
 from mckibben.motion.commands import Commands
 from mckibben.motion.drive import drive
-from mckibben.motion.moments import commanding, outer_of
 from mckibben.motion.plant import Plant
 from mckibben.motion.regime import FIRST, PER
-from mckibben.motion.rows import Begin, Rows, empty, rows_of
 from mckibben.motion.start import Begun, at_rest
+from mckibben.motiongradients.along import Way
+from mckibben.motiongradients.moments import commanding, outer_of
+from mckibben.motiongradients.rows import Begin, Rows, empty, rows_of
 from mckibben.spec.controls import PID
 from mckibben.spec.errors import SpecError
 from mckibben.spec.rig import Rig

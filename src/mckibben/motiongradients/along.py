@@ -15,12 +15,12 @@ import numpy as np
 from scipy.integrate import RK45
 
 from mckibben.motion.modes import Ended, landed, margin
-from mckibben.motion.moments import Source, commanding, moment, outer_of, value
 from mckibben.motion.plant import Plant
 from mckibben.motion.regime import Rates, Seen
-from mckibben.motion.rows import Rows
-from mckibben.motion.sampled import Memory, commanded, first_memory, sampled
-from mckibben.motion.traced import TracedMode, TracedRegime
+from mckibben.motiongradients.moments import Source, commanding, moment, outer_of, value
+from mckibben.motiongradients.rows import Rows
+from mckibben.motiongradients.sampled import Memory, commanded, first_memory, sampled
+from mckibben.motiongradients.traced import TracedMode, TracedRegime
 
 __all__ = ["Along", "Way", "along"]
 

@@ -8,12 +8,12 @@ import attrs
 import jax
 import jax.numpy as jnp
 
-from mckibben.motion.moments import outer_of, value
 from mckibben.motion.plant import Plant
 from mckibben.motion.regime import FIRST, PER
-from mckibben.motion.rows import Begin
 from mckibben.motion.start import state_of
-from mckibben.motion.traced import TracedMode, TracedRegime
+from mckibben.motiongradients.moments import outer_of, value
+from mckibben.motiongradients.rows import Begin
+from mckibben.motiongradients.traced import TracedMode, TracedRegime
 
 __all__ = ["started"]
 

@@ -13,9 +13,9 @@ import numpy as np
 
 from mckibben.motion.drive import Driven, Stretch
 from mckibben.motion.modes import Ended
-from mckibben.motion.moments import Source, commanding, moments
 from mckibben.motion.plant import Plant
 from mckibben.motion.regime import Mode
+from mckibben.motiongradients.moments import Source, commanding, moments
 from mckibben.spec.controls import PID
 from mckibben.spec.signal import TINY
 
