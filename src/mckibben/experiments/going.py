@@ -13,14 +13,14 @@ from mckibben.solver.held import Held, rows_of, targets_of
 from mckibben.solver.problem import Problem
 from mckibben.solver.system import Unknowns
 
-__all__ = ["Going", "Walk", "along", "mounted", "step_to"]
+__all__ = ["LARGEST_TURN", "Going", "Walk", "along", "mounted", "step_to"]
 
 LARGEST_TURN = 0.05
 """Largest turn of a crossing [rad] in one step of the path; a longer way is taken in parts."""
 SMALLEST = 1.0 / 1024.0
 """Smallest part of the way from state to state."""
 SHORTER = 0.9
-"""Share of `LARGEST_TURN` that is aimed at where a way is taken in parts: crossings do not turn evenly along it."""
+"""Share of the largest turn that is aimed at where a way is taken in parts: crossings do not turn evenly along it."""
 AT_ONCE = 32
 """States that are walked in compiled code before they are looked at."""
 
@@ -47,37 +47,39 @@ class Going:
 
 
 def step_to(
-    problem: Problem, here: Going, begin: Held, end: Held, shares: tuple[float, ...] = (), turn: float | None = None
+    problem: Problem, here: Going, begin: Held, end: Held, shares: tuple[float, ...] = (), turn: float | None = None,
+    farthest: float = LARGEST_TURN,
 ) -> Going | None:  # fmt: skip
     """From a state at which `begin` holds, straight to `end`; in parts where crossings turn far or Newton fails.
 
     `shares` are those of a way of a muscle that is near: with the same parts, results change smoothly from muscle to
-    muscle. `turn` is that of a crossing where the way was tried in one step, infinite where no state was found.
+    muscle. `turn` is that of a crossing where the way was tried in one step, infinite where no state was found. No part
+    turns one by more than `farthest`.
     """
     now, share, left = here, 0.0, list(shares)
     taken: list[float] = []
-    parts = 1 if turn is None else _parts(1.0, 1.0, turn)
+    parts = 1 if turn is None else _parts(1.0, 1.0, turn, farthest)
     while share < 1.0:
         ways = left or [*np.linspace(share, 1.0, parts + 1)[1:-1].tolist(), 1.0]
         if ways[0] - share < SMALLEST:
             return None
         aims = [end if to >= 1.0 else begin.towards(end, to) for to in ways]
-        at, most = begin if share == 0.0 else begin.towards(end, share), 2.0 * LARGEST_TURN if left else LARGEST_TURN
+        at, most = begin if share == 0.0 else begin.towards(end, share), 2.0 * farthest if left else farthest
         walk = along(problem, now, at, aims, most)
         for one, to in zip(walk.states, ways, strict=False):
             now, share = attrs.evolve(one, iterations=one.iterations + (now.iterations if taken else 0)), to
             taken.append(to)
         done, left = len(walk.states), left[len(walk.states) :]
         if walk.turn is not None:
-            parts, left = _parts(1.0 - share, ways[done] - share, walk.turn), []
+            parts, left = _parts(1.0 - share, ways[done] - share, walk.turn, farthest), []
         elif not left:
             parts = max(parts - done, 1)
     return attrs.evolve(now, shares=tuple(taken))
 
 
-def _parts(way: float, tried: float, turn: float) -> int:
+def _parts(way: float, tried: float, turn: float, farthest: float) -> int:
     """In how many parts a way is taken of which one was too long: by how far a crossing turned, or half as long."""
-    shorter = SHORTER * LARGEST_TURN / turn if np.isfinite(turn) else 0.5
+    shorter = SHORTER * farthest / turn if np.isfinite(turn) else 0.5
     return int(np.ceil(way / (tried * shorter) - 1e-9))
 
 

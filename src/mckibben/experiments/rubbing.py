@@ -6,13 +6,14 @@ holds the pressure, that comes first, at the length as made; then the other quan
 
 from collections.abc import Sequence
 from functools import partial
+from itertools import pairwise
 from typing import Any
 
 import attrs
 import jax
 import numpy as np
 
-from mckibben.experiments.going import Going, along, mounted, step_to
+from mckibben.experiments.going import LARGEST_TURN, Going, along, mounted, step_to
 from mckibben.measure.report import Part
 from mckibben.measure.survey import ROUNDING, Memories, Survey, error_bound, survey
 from mckibben.solver.bench import QUICK, Bench, sizes_for
@@ -22,7 +23,7 @@ from mckibben.solver.problem import Problem
 from mckibben.solver.threads import one_thread
 from mckibben.spec import Along, SpecError, Step
 
-__all__ = ["rubbed"]
+__all__ = ["denser", "rubbed", "walked"]
 
 LARGEST = 48
 """Unknowns up to which a path is walked anew: the error that the kink of the moment leaves falls slowly."""
@@ -32,8 +33,12 @@ LOOSE = 1e-4
 """Tolerance from which on walks begin on few unknowns."""
 SERIES = 0.5
 """Error by how the series end, over that found, up to which it is points that a path lacks, not unknowns."""
-NEARBY = 2
-"""States before and after one whose differences count as its own."""
+NEARBY = 4
+"""States before and after one whose differences count as its own: half of them are compared."""
+EARLY = (1.0 / 64.0, 1.0 / 16.0, 1.0 / 4.0)
+"""Parts of the first step after a path turns, where it stops in between."""
+STRAIGHT = 1e-6
+"""How far the cosine between two ways may be from 1 for a path to go straight on."""
 LOST = "no state was found on from the one before: the shape gives way, or there is none"
 
 
@@ -44,8 +49,13 @@ class _Leg:
     held: tuple[str, ...]
     asked: int
     possible: int  #: states before full extension
-    states: list[Going]
+    way: list[Going | None]  #: None where a walk in larger steps has gone over a state
     why: str  #: why it ended
+
+    @property
+    def states(self) -> list[Going]:
+        """Those that are there."""
+        return [one for one in self.way if one is not None]
 
 
 @one_thread()
@@ -54,8 +64,9 @@ def rubbed(
 ) -> list[Part]:
     """The states of every step, on as many unknowns as the tolerance needs, their points crowded by b.
 
-    Where slipping crossings border on sticking ones their moment has a kink, of which a series knows nothing: the error
-    is told by how much force and length differ from those on half as many points, or half as many unknowns.
+    Where slipping crossings border on sticking ones their moment has a kink, of which a series knows nothing; and where
+    only some slip, forces depend on the steps of the path. So the error is told by how much force and length differ
+    from those on half as many points, or half as many unknowns, in steps twice as large.
     """
     for step in steps:
         if step.gas is not None or step.along == Along.BRANCH:
@@ -68,27 +79,31 @@ def rubbed(
     few = tolerance >= LOOSE or not smooth
     left = sizes[0 if few else 1 :]
     problem = bench.problem(left.pop(0), b)
-    legs = before = _walked(bench, problem, steps, watch)
+    walk = partial(walked, bench, steps=steps, watch=watch)
+    rough = walk(problem, halved=True)
+    legs: list[_Leg] | None = None
     errors: list[np.ndarray] = []
     for _ in range(MOST):
-        if _interrupted(legs) or (errors and all((error <= tolerance).all() for error in errors)):
+        if _interrupted(legs or rough) or (errors and all((error <= tolerance).all() for error in errors)):
             break
-        points = smooth and (_points_lack(problem, legs, errors) if errors else not few)
+        points = smooth and (_points_lack(problem, legs or rough, errors) if errors else not few)
         if _dense(problem) if points else not left:
             break
-        finer = _denser(bench, problem) if points else bench.problem(left.pop(0), b)
-        again = _walked(bench, finer, steps, watch)
-        if _reached(again) < _reached(legs) and not _interrupted(again):
+        if legs is not None and not _dense(problem):  # twice the points are as many as twice the unknowns have
+            rough = walk(problem, halved=True)
+        finer = denser(bench, problem) if points else bench.problem(left.pop(0), b)
+        again = walk(finer)
+        if _reached(again) < _reached(legs or rough) and not _interrupted(again):
             break  # short waves may lose the way: what was reached is kept
-        # twice the points are as many as twice the unknowns have, so these are compared with fewer of both
-        coarse = legs if points else before
-        errors = [_differences(bench, *pair) for pair in zip(again, coarse, strict=True)]
+        errors = [_differences(bench, *pair) for pair in zip(again, rough, strict=True)]
         if _dense(finer):  # the same series on more points: the difference knows it not
             errors = [np.maximum(*pair) for pair in zip(errors, map(partial(_by_tail, finer), again), strict=True)]
-        problem, legs, before = finer, again, coarse if points else again
-    if not (errors or few or _interrupted(legs)):  # nothing to compare with on more points, so on fewer unknowns
-        coarse = _walked(bench, bench.problem(QUICK, b), steps, watch)
-        errors = [_differences(bench, *pair) for pair in zip(legs, coarse, strict=True)]
+        problem, legs = finer, again
+    if legs is None:  # nothing to compare with on more points, so on fewer unknowns
+        legs = walk(problem)
+        if not _interrupted(rough) and not few:
+            rough = walk(bench.problem(QUICK, b), halved=True)
+            errors = [_differences(bench, *pair) for pair in zip(legs, rough, strict=True)]
     errors = errors or [np.full(len(leg.states), np.nan) for leg in legs]
     return [_part(problem, *pair) for pair in zip(legs, errors, strict=True)]
 
@@ -102,7 +117,7 @@ def _points_lack(problem: Problem, legs: list[_Leg], errors: list[np.ndarray]) -
     return _largest([_by_tail(problem, leg) for leg in legs]) <= SERIES * _largest(errors)
 
 
-def _denser(bench: Bench, problem: Problem) -> Problem:
+def denser(bench: Bench, problem: Problem) -> Problem:
     """The same series on twice the points."""
     basis = attrs.evolve(problem.basis, dense=True)  # type: ignore[arg-type, unused-ignore]
     return Problem.of(basis, bench.p, problem.b)
@@ -132,8 +147,8 @@ def _interrupted(legs: list[_Leg]) -> bool:
 
 
 def _reached(legs: list[_Leg]) -> int:
-    """States of all steps together."""
-    return sum(len(leg.states) for leg in legs)
+    """States of all steps together, as far as they were walked."""
+    return sum(len(leg.way) for leg in legs)
 
 
 def _differences(bench: Bench, leg: _Leg, coarse: _Leg) -> np.ndarray:
@@ -141,18 +156,22 @@ def _differences(bench: Bench, leg: _Leg, coarse: _Leg) -> np.ndarray:
 
     What a kink between two points leaves vanishes where it happens to lie well, so that the states nearby count too.
     """
-    area, found = float(np.pi * bench.p.R0**2), []
-    for one, other in zip(leg.states, coarse.states, strict=False):
+    area, found = float(np.pi * bench.p.R0**2), np.full(len(leg.way), np.nan)
+    for k, (one, other) in enumerate(zip(leg.way, coarse.way, strict=False)):
+        if one is None or other is None:
+            continue
         now, then = one.present, other.present
         load = max(abs(now["force"]), abs(area * now["pressure"]), 1e-300)
         by_load = max(abs(now["force"] - then["force"]), area * abs(now["pressure"] - then["pressure"])) / load
-        found.append(max(by_load, abs(now["length"] - then["length"]) / now["length"]))
-    found = [max(found[max(k - NEARBY, 0) : k + NEARBY + 1]) for k in range(len(found))]
-    return np.array(found + [np.nan] * (len(leg.states) - len(found)))
+        found[k] = max(by_load, abs(now["length"] - then["length"]) / now["length"])
+    known = np.flatnonzero(~np.isnan(found))
+    near = [found[max(k - NEARBY, 0) : k + NEARBY + 1] for k in range(len(found))]
+    last = known[-1] if len(known) else -1
+    return np.array([np.nanmax(some) if k <= last else np.nan for k, some in enumerate(near)])
 
 
-def _walked(bench: Bench, problem: Problem, steps: tuple[Step, ...], watch: Watch) -> list[_Leg]:
-    """Every step in turn; after one that was not finished none is tried."""
+def walked(bench: Bench, problem: Problem, steps: tuple[Step, ...], watch: Watch, halved: bool = False) -> list[_Leg]:
+    """Every step in turn; after one that was not finished none is tried. `halved` takes half as many steps."""
     here: Going | None = Going.as_made(problem)
     legs: list[_Leg] = []
     total, done = sum(step.points for step in steps), 0
@@ -165,49 +184,83 @@ def _walked(bench: Bench, problem: Problem, steps: tuple[Step, ...], watch: Watc
         beyond = np.flatnonzero(wanted[:, 0] >= bench.longest) if held[0] == "length" else np.zeros(0, int)
         possible = int(beyond[0]) if len(beyond) else n
         path = [Held(held, tuple(row)) for row in wanted[:possible].tolist()]
-        states, why = _states(problem, here, path, lambda k, _, done=done: watch(done + k, total), first=not legs)
-        why = bench.too_long() if len(states) == possible < n and why != INTERRUPTED else why
-        legs.append(_Leg(held, n, possible, states, why))
-        here = states[-1] if len(states) == n else None
+        seen = partial(_told, watch, done, total)
+        way, why = _states(problem, here, path, seen, first=not legs, halved=halved)
+        why = bench.too_long() if len(way) == possible < n and why != INTERRUPTED else why
+        legs.append(_Leg(held, n, possible, way, why))
+        here = way[-1] if len(way) == n else None
         done += n
     return legs
 
 
-def _states(problem: Problem, here: Going, path: Sequence[Held], watch: Any, first: bool) -> tuple[list[Going], str]:
+def _told(watch: Watch, done: int, total: int, k: int) -> None:
+    watch(done + k, total)
+
+
+def _states(
+    problem: Problem, here: Going, path: Sequence[Held], watch: Any, first: bool, halved: bool
+) -> tuple[list[Going | None], str]:
     """The states of a path as far as they were reached, and why it ended."""
-    states: list[Going] = []
+    way: list[Going | None] = []
+    farthest = 2.0 * LARGEST_TURN if halved else LARGEST_TURN
     try:
-        now = _pressurised(problem, here, path[0]) if first and path else here
+        now = _pressurised(problem, here, path[0], farthest) if first and path else here
         if now is None:
-            return states, LOST
-        while len(states) < len(path):
-            k, held = len(states), path[len(states)]
-            begin = Held(held.names, tuple(now.present[name] for name in held.names)) if not k else path[k - 1]
-            walk = along(problem, now, begin, path[k:])
+            return way, LOST
+        begin = Held(path[0].names, tuple(now.present[name] for name in path[0].names)) if path else Held((), ())
+        stops = _stops([begin, *path], halved)
+        while stops:
+            walk = along(problem, now, begin, [held for held, _ in stops], farthest)
             found = walk.states
             if not found:  # the next is too far for one step
-                parts = step_to(problem, now, begin, held, turn=walk.turn)
+                parts = step_to(problem, now, begin, stops[0][0], turn=walk.turn, farthest=farthest)
                 if parts is None:
-                    return states, LOST
+                    return way, LOST
                 found = [parts]
-            now = found[-1]
-            for one in found:
-                states.append(one)
-                watch(len(states), len(path))
+            now, begin = found[-1], stops[len(found) - 1][0]
+            for one, (_, k) in zip(found, stops, strict=False):
+                if k is not None:
+                    way += [None] * (k - len(way)) + [one]
+                    watch(len(way))
+            stops = stops[len(found) :]
     except KeyboardInterrupt:  # the part reached is worth keeping
-        return states, INTERRUPTED
-    return states, "converged"
+        return way, INTERRUPTED
+    return way, "converged"
 
 
-def _pressurised(problem: Problem, here: Going, held: Held) -> Going | None:
+def _stops(path: Sequence[Held], halved: bool) -> list[tuple[Held, int | None]]:
+    """Where a path stops after its begin: what is held and which state of the path it is, or None for one in between.
+
+    Where a path turns, crossings that stick soon begin to slip, so that the first step is taken in parts; `halved`
+    takes it at once, and every second state of each straight part.
+    """
+    if len(path) < 2:
+        return []
+    ways = np.diff([held.values for held in path], axis=0)
+    largest = np.abs(ways).max(axis=0)
+    ways = ways / np.where(largest > 0.0, largest, 1.0)
+    lengths = np.linalg.norm(ways, axis=1)
+    onward = np.sum(ways[:-1] * ways[1:], axis=1) >= (1.0 - STRAIGHT) * lengths[:-1] * lengths[1:]
+    stays = (lengths[1:] == 0.0) | (lengths[:-1] == 0.0)
+    corners = [0, *(np.flatnonzero(~onward | stays) + 1).tolist(), len(path) - 1]
+    stops: list[tuple[Held, int | None]] = []
+    for a, b in pairwise(corners):
+        if not halved and lengths[a] > 0.0:
+            stops += [(path[a].towards(path[a + 1], share), None) for share in EARLY]
+        which = range(b, a, -2) if halved else range(b, a, -1)
+        stops += [(path[k], k - 1) for k in reversed(which)]
+    return stops
+
+
+def _pressurised(problem: Problem, here: Going, held: Held, farthest: float) -> Going | None:
     """The muscle at its length as made and the pressure that is held at first, if one is."""
     pressure = held.get("pressure")
     if pressure is None:
         return here
     legs = [Held.of(length=here.present["length"], pressure=value) for value in (0.0, pressure)]
-    found = step_to(problem, here, legs[0], legs[1])
+    found = step_to(problem, here, legs[0], legs[1], farthest=farthest)
     if found is None and (there := mounted(problem, here, legs[0])) is not None:
-        found = step_to(problem, there, legs[0], legs[1])
+        found = step_to(problem, there, legs[0], legs[1], farthest=farthest)
     return found
 
 
