@@ -154,7 +154,7 @@ def test_sliding_chamber(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys
     rows = printed("sliding_chamber.py", tmp_path, monkeypatch, capsys)
     assert rows[0] == pytest.approx([0.0, 4.122, 3.739], abs=HALF_A_DIGIT)
     assert rows[3] == pytest.approx([1.0, 62.562, 62.395], abs=6e-3)  # at the tolerance of 1e-2
-    assert rows[4] == pytest.approx([0.086], abs=1.1e-3)
+    assert rows[4] == pytest.approx([0.082], abs=1.1e-3)  # in these steps; 0.067 in forty
     assert (tmp_path / "out" / "sliding_chamber.png").stat().st_size > 10_000
 
 

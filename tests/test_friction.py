@@ -9,7 +9,7 @@ import pytest
 from numpy.testing import assert_allclose, assert_array_equal
 
 import mckibben as mk
-from mckibben.experiments import rubbing as rubbing_module
+from mckibben.experiments import walked as walked_module
 from mckibben.model import friction
 from mckibben.model.parameters import parameters
 from mckibben.model.point import Point
@@ -247,9 +247,9 @@ def test_part_reached() -> None:
 def test_what_was_reached_on_few_unknowns_is_kept(monkeypatch: pytest.MonkeyPatch) -> None:
     """More of them may lose the way: then the coarser states count, with their error."""
     fine = mk.run(rubbing(), isobaric(110, 112), tolerance=1e-5)
-    step = rubbing_module.step_to
+    step = walked_module.step_to
     monkeypatch.setattr(
-        rubbing_module,
+        walked_module,
         "step_to",
         lambda problem, *rest, **named: None if problem.basis.dense else step(problem, *rest, **named),
     )
@@ -263,9 +263,9 @@ def test_many_states_at_once_or_one_by_one(monkeypatch: pytest.MonkeyPatch) -> N
     """A path walked in compiled code, its states foretold, is that walked state by state from sticking crossings."""
     test = isobaric(*np.linspace(104, 110, 7), 109.5, 108.5, 107.5)
     at_once = mk.run(rubbing(BOTH), test, tolerance=1e-2)
-    along = rubbing_module.along
+    along = walked_module.along
     monkeypatch.setattr(
-        rubbing_module, "along", lambda one, here, begin, path, *rest: along(one, here, begin, path[:1], *rest)
+        walked_module, "along", lambda one, here, begin, path, *rest: along(one, here, begin, path[:1], *rest)
     )
     one_by_one = mk.run(rubbing(BOTH), test, tolerance=1e-2)
     assert_allclose(at_once.force, one_by_one.force, rtol=1e-9)
@@ -412,5 +412,5 @@ def test_slack_fibres_are_mounted_first(monkeypatch: pytest.MonkeyPatch) -> None
     assert found.verdict == ("stable",) * 4
     assert found.force[3] - found.force[1] > 0.1  # more is needed to lengthen it than it pulls as it shortens
     assert (np.diff(found.data["dissipated"]) > 0.0).all()
-    monkeypatch.setattr(rubbing_module, "mounted", lambda *_: None)
+    monkeypatch.setattr(walked_module, "mounted", lambda *_: None)
     assert mk.run(muscle, test, tolerance=1e-2).reached == 0

@@ -15,8 +15,9 @@ from pathlib import Path
 import numpy as np
 
 import mckibben as mk
-from mckibben.experiments.rubbing import denser, walked
+from mckibben.experiments.rubbing import denser
 from mckibben.experiments.run import crowding_for
+from mckibben.experiments.walked import walked
 from mckibben.solver.bench import Bench
 from mckibben.spec import Test
 
