@@ -65,8 +65,7 @@ def report(rows: list[dict[str, Any]], about: str) -> None:
         f"corner and back, in {LEG} steps each; {len(whole)} were reached whole, {len(ended)} end early.",
         "",
         "What a check may be off is the error that is told; of work, how much it and what is stored and dissipated "
-        f"change with twice as many steps in addition; of the branches {INSIDE:.0%} of the height between them. Error "
-        "estimates know nothing of the steps of a path (theory page, friction at the crossings).",
+        f"change with twice as many steps in addition; of the branches {INSIDE:.0%} of the height between them.",
         "",
         "| check | paths | median | largest | beyond it |",
         "| --- | --- | --- | --- | --- |",
