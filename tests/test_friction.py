@@ -244,6 +244,25 @@ def test_part_reached() -> None:
     assert np.isnan(found.data["dissipated"][1])
 
 
+def test_an_interrupted_path_is_walked_no_further() -> None:
+    """The walk that is interrupted goes over every second state: those are put in, and none beyond."""
+    asked: list[int] = []
+
+    def stop(done: int, total: int) -> None:
+        asked.append(done)
+        if len(asked) == 2:
+            raise KeyboardInterrupt
+
+    lengths = np.linspace(110, 102, 9)
+    found = mk.run(rubbing(), isobaric(*lengths), watch=stop)
+    assert found.status == "interrupted"
+    assert found.reached == max(asked) == asked[1] < 6
+    assert found.verdict[: found.reached] == ("stable",) * found.reached
+    assert str(found.data["reason"].values[-1]) == "interrupted"
+    whole = mk.run(rubbing(), isobaric(*lengths))
+    assert_allclose(found.force[: found.reached], whole.force[: found.reached], rtol=1e-4)
+
+
 def test_what_was_reached_on_few_unknowns_is_kept(monkeypatch: pytest.MonkeyPatch) -> None:
     """More of them may lose the way: then the coarser states count, with their error."""
     fine = mk.run(rubbing(), isobaric(110, 112), tolerance=1e-5)
@@ -263,9 +282,9 @@ def test_many_states_at_once_or_one_by_one(monkeypatch: pytest.MonkeyPatch) -> N
     """A path walked in compiled code, its states foretold, is that walked state by state from sticking crossings."""
     test = isobaric(*np.linspace(104, 110, 7), 109.5, 108.5, 107.5)
     at_once = mk.run(rubbing(BOTH), test, tolerance=1e-2)
-    along = walked_module.along
+    along = walked_module.steps_along
     monkeypatch.setattr(
-        walked_module, "along", lambda one, here, begin, path, *rest: along(one, here, begin, path[:1], *rest)
+        walked_module, "steps_along", lambda one, here, begin, path, *rest: along(one, here, begin, path[:1], *rest)
     )
     one_by_one = mk.run(rubbing(BOTH), test, tolerance=1e-2)
     assert_allclose(at_once.force, one_by_one.force, rtol=1e-9)

@@ -36,7 +36,7 @@ SOLID = mk.Muscle(
 """A tube with so much rubber that it fills the braid before the fibres are straight."""
 
 
-def test_soft_fibres_are_blown_up_before_the_pressure_is_there():
+def test_soft_fibres_are_blown_up_before_the_pressure_is_there() -> None:
     """No state at 3 bar at any length near rest: what is told is how far the pressure goes at rest, and why no further.
 
     Followed by arclength past that end, the branch bulges further behind its fitting and never comes to 3 bar.
@@ -65,7 +65,7 @@ def test_soft_fibres_are_blown_up_before_the_pressure_is_there():
 
 
 @pytest.mark.parametrize("share", [0.2, 0.4])
-def test_a_free_cylinder_of_soft_fibres_has_a_radius_in_closed_form(share):
+def test_a_free_cylinder_of_soft_fibres_has_a_radius_in_closed_form(share: float) -> None:
     """1 - 1/lambda of the pressure that a cylinder never reaches; bending, which that leaves out, is 1e-6 of it."""
     free, angle, pull = SOFT.replace("ends", "free"), np.radians(60.0), 0.5e9 * np.pi / 4.0 * 0.12e-3**2
     limit = 88 * pull * np.cos(angle) ** 2 / (2.0 * np.pi * 0.016**2 * np.sin(angle))
@@ -75,7 +75,7 @@ def test_a_free_cylinder_of_soft_fibres_has_a_radius_in_closed_form(share):
     assert float(state.data["r"].max()) == pytest.approx(radius, rel=2e-6)
 
 
-def test_a_tube_that_fills_the_braid_ends_the_way():
+def test_a_tube_that_fills_the_braid_ends_the_way() -> None:
     """The bore closes there, and the force grows without the length; points are placed for lengths beyond as well."""
     bench = Bench.of(SOLID)
     held = Held.of(length=0.425, pressure=0.0)
@@ -92,7 +92,7 @@ def test_a_tube_that_fills_the_braid_ends_the_way():
     assert last.force > 2.0 * before.force
 
 
-def test_how_far_open_a_bore_is():
+def test_how_far_open_a_bore_is() -> None:
     """On a cylinder by the volume of rubber, which does not change; a thin wall has no bore to close."""
     problem = Bench.of(SOLID.replace("chamber.gap", False)).problem(12, 1.0)
     u, loads = np.zeros(problem.basis.unknowns), np.zeros(2)

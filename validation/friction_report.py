@@ -36,7 +36,7 @@ CHECKS = {
 def failures(row: dict[str, Any]) -> list[str]:
     """What is wrong with a case, in words."""
     found, said = row["found"], []
-    if found["status"] == "crash":
+    if found.get("verdict") == "crash":
         said.append(f"crash: {found['reason']}")
     if "lost" in found:
         said.append(f"the same path in other steps or on other unknowns ends early: {found['lost']}")

@@ -13,7 +13,6 @@ validation/random_friction.md.
 
 import argparse
 import os
-import signal
 import warnings
 from typing import Any
 
@@ -21,7 +20,7 @@ from environment import OUT
 from friction_options import CORNERS, drawn, path, rubbing_case, test_of
 from friction_report import INSIDE, ROUGH, report
 from options import has_profile
-from random_muscles import read, write_lines
+from random_muscles import read, within, write_lines
 
 os.environ.setdefault("MCKIBBEN_COMPILE", "quick")
 
@@ -39,21 +38,10 @@ ROUNDING = 1e-9
 
 
 def one(case: dict[str, Any]) -> dict[str, Any]:
-    """All checks of one case; a crash is a finding, not the end of the run, and so is one that takes too long."""
-
-    def late(*_: Any) -> None:
-        raise TimeoutError(f"took more than {LIMIT} s of the processor")
-
-    signal.signal(signal.SIGPROF, late)
-    signal.setitimer(signal.ITIMER_PROF, LIMIT)
-    try:
-        with warnings.catch_warnings():
-            warnings.simplefilter("ignore", mk.MuscleWarning)
-            return {"case": case, "found": checked(case)}
-    except Exception as error:
-        return {"case": case, "found": {"status": "crash", "reason": repr(error)}}
-    finally:
-        signal.setitimer(signal.ITIMER_PROF, 0)
+    """All checks of one case."""
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", mk.MuscleWarning)
+        return within(LIMIT, checked, case)
 
 
 def checked(case: dict[str, Any]) -> dict[str, Any]:

@@ -9,6 +9,7 @@ on all samples is in validation/README.md, with a picture of each.
 import argparse
 import json
 import multiprocessing
+import signal
 import time
 from collections.abc import Callable
 from concurrent.futures import ProcessPoolExecutor, as_completed
@@ -148,6 +149,23 @@ def done(sample: Sample) -> dict[int, dict[str, Any]]:
     for k in rows.keys() & times.keys():
         rows[k]["found"] |= times[k]["times"] | {"again": True}
     return rows
+
+
+def within(seconds: float, checked: Callable[[Case], dict[str, Any]], case: Case) -> dict[str, Any]:
+    """What is found of a case; a crash is a finding, not the end of the run, and so is one that takes too long: more
+    than so many seconds of the processor, compiling included."""
+
+    def late(*_: Any) -> None:
+        raise TimeoutError(f"took more than {seconds} s of the processor")
+
+    signal.signal(signal.SIGPROF, late)
+    signal.setitimer(signal.ITIMER_PROF, seconds)
+    try:
+        return {"case": case, "found": checked(case)}
+    except Exception as error:
+        return {"case": case, "found": {"verdict": "crash", "reason": repr(error)}}
+    finally:
+        signal.setitimer(signal.ITIMER_PROF, 0)
 
 
 def write_lines(

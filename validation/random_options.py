@@ -14,14 +14,13 @@ With --again the cases that are named are judged by themselves; writes validatio
 
 import argparse
 import os
-import signal
 from pathlib import Path
 from typing import Any
 
 from environment import OUT
 from judges import judge_target, turns_back
 from options import EACH, SEED, case_of, drawn, has_profile
-from random_muscles import read, write_lines
+from random_muscles import read, within, write_lines
 
 os.environ.setdefault("MCKIBBEN_COMPILE", "quick")
 
@@ -44,7 +43,7 @@ AGAIN = (
 FINE = (64, 128, 256)
 """Half-length unknowns of the states that judge: as many as it takes until what is estimated of their own error is
 below what they judge."""
-LIMIT = 600
+LIMIT = 1200
 """Seconds of the processor that a case may take, compiling included."""
 STEP = 1e-4
 """Of lengths and pressures in differences, over the rest length and 1 bar; halved once and extrapolated."""
@@ -56,19 +55,8 @@ TOLERANCE = 1e-6
 
 
 def one(case: dict[str, Any]) -> dict[str, Any]:
-    """All checks of one case; a crash is a finding, not the end of the run, and so is one that takes too long."""
-
-    def late(*_: Any) -> None:
-        raise TimeoutError(f"took more than {LIMIT} s of the processor")
-
-    signal.signal(signal.SIGPROF, late)
-    signal.setitimer(signal.ITIMER_PROF, LIMIT)
-    try:
-        return {"case": case, "found": checked(case)}
-    except Exception as error:
-        return {"case": case, "found": {"verdict": "crash", "reason": repr(error)}}
-    finally:
-        signal.setitimer(signal.ITIMER_PROF, 0)
+    """All checks of one case."""
+    return within(LIMIT, checked, case)
 
 
 def checked(case: dict[str, Any]) -> dict[str, Any]:

@@ -13,7 +13,7 @@ from mckibben.solver.held import Held, rows_of, targets_of
 from mckibben.solver.problem import Problem
 from mckibben.solver.system import Unknowns
 
-__all__ = ["LARGEST_TURN", "Going", "Walk", "along", "mounted", "step_to"]
+__all__ = ["LARGEST_TURN", "Going", "Walk", "mounted", "step_to", "steps_along"]
 
 LARGEST_TURN = 0.05
 """Largest turn of a crossing [rad] in one step of the path; a longer way is taken in parts."""
@@ -65,7 +65,7 @@ def step_to(
             return None
         aims = [end if to >= 1.0 else begin.towards(end, to) for to in ways]
         at, most = begin if share == 0.0 else begin.towards(end, share), 2.0 * farthest if left else farthest
-        walk = along(problem, now, at, aims, most)
+        walk = steps_along(problem, now, at, aims, most)
         for one, to in zip(walk.states, ways, strict=False):
             now, share = attrs.evolve(one, iterations=one.iterations + (now.iterations if taken else 0)), to
             taken.append(to)
@@ -91,7 +91,9 @@ class Walk:
     turn: float | None  #: by how much crossings turned in a step that was too long, or infinity; None where all is done
 
 
-def along(problem: Problem, here: Going, begin: Held, path: Sequence[Held], farthest: float = LARGEST_TURN) -> Walk:
+def steps_along(
+    problem: Problem, here: Going, begin: Held, path: Sequence[Held], farthest: float = LARGEST_TURN
+) -> Walk:
     """The first states of a path from one at which `begin` holds, each in one step, as far as that goes: at most
     `AT_ONCE`, in compiled code."""
     path = path[:AT_ONCE]

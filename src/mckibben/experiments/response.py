@@ -25,7 +25,7 @@ from mckibben.solver.problem import Basis
 from mckibben.solver.system import Unknowns
 from mckibben.spec import Along, Muscle, SpecError, Step, Test
 
-__all__ = ["differentiable", "response", "settled"]
+__all__ = ["BEYOND", "differentiable", "honest", "response", "settled"]
 
 SIZE = 24
 """Unknowns where the numbers are traced, so that an error estimate cannot be asked for."""
@@ -155,12 +155,12 @@ def _results(
         safe = jax.tree.map(lambda row, good=good: jnp.where(good[:, None], row, 0.0), state)
         seen = jax.vmap(partial(read, basis, on))(safe)
         good = good & (seen.largest_slope <= jnp.pi)
-        found.append({name: _honest(seen.numbers[name], good, still) for name in OBSERVED})
+        found.append({name: honest(seen.numbers[name], good, still) for name in OBSERVED})
         present = reading(basis, on, jax.tree.map(lambda row: row[-1], state))
     return {name: jnp.concatenate([seen[name] for seen in found]) for name in OBSERVED}
 
 
-def _honest(values: Array, good: Array, still: Array) -> Array:
+def honest(values: Array, good: Array, still: Array) -> Array:
     """NaN where there is no state, and derivatives there that are not finite.
 
     The values there are finite stand-ins, since one NaN would spoil every derivative of the others in reverse mode (as

@@ -72,7 +72,7 @@ def rubbed(
             errors = [np.maximum(*pair) for pair in zip(errors, map(partial(_by_tail, finer), again), strict=True)]
         problem, legs = finer, again
     if legs is None:  # nothing to compare with on more points, so on fewer unknowns
-        legs = walk(problem)
+        legs = walk(problem, most=_reached(rough) if _interrupted(rough) else None)
         if not _interrupted(rough) and not few:
             rough = walk(bench.problem(QUICK, b), halved=True)
             errors = [_differences(bench, *pair) for pair in zip(legs, rough, strict=True)]

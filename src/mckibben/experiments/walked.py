@@ -12,7 +12,7 @@ from typing import Any
 import attrs
 import numpy as np
 
-from mckibben.experiments.going import LARGEST_TURN, Going, along, mounted, step_to
+from mckibben.experiments.going import LARGEST_TURN, Going, mounted, step_to, steps_along
 from mckibben.solver.bench import Bench
 from mckibben.solver.held import Held
 from mckibben.solver.path import INTERRUPTED, Watch
@@ -44,8 +44,13 @@ class Leg:
         return [one for one in self.way if one is not None]
 
 
-def walked(bench: Bench, problem: Problem, steps: tuple[Step, ...], watch: Watch, halved: bool = False) -> list[Leg]:
-    """Every step in turn; after one that was not finished none is tried. `halved` takes half as many steps."""
+def walked(
+    bench: Bench, problem: Problem, steps: tuple[Step, ...], watch: Watch, halved: bool = False, most: int | None = None
+) -> list[Leg]:
+    """Every step in turn; after one that was not finished none is tried.
+
+    `halved` takes half as many steps. `most` states are walked, as many as an interrupted walk had come to.
+    """
     here: Going | None = Going.as_made(problem)
     legs: list[Leg] = []
     total, done = sum(step.points for step in steps), 0
@@ -58,8 +63,10 @@ def walked(bench: Bench, problem: Problem, steps: tuple[Step, ...], watch: Watch
         beyond = np.flatnonzero(wanted[:, 0] >= bench.longest) if held[0] == "length" else np.zeros(0, int)
         possible = int(beyond[0]) if len(beyond) else n
         path = [Held(held, tuple(row)) for row in wanted[:possible].tolist()]
+        left = len(path) if most is None else min(max(most - done, 0), len(path))
         seen = partial(_told, watch, done, total)
-        way, why = _states(problem, here, path, seen, first=not legs, halved=halved)
+        way, why = _states(problem, here, path[:left], seen, first=not legs, halved=halved)
+        why = INTERRUPTED if left < len(path) else why
         why = bench.too_long() if len(way) == possible < n and why != INTERRUPTED else why
         legs.append(Leg(held, n, possible, way, why))
         here = way[-1] if len(way) == n else None
@@ -84,7 +91,7 @@ def _states(
         begin = Held(path[0].names, tuple(now.present[name] for name in path[0].names)) if path else Held((), ())
         stops = _stops([begin, *path], halved)
         while stops:
-            walk = along(problem, now, begin, [held for held, _ in stops], farthest)
+            walk = steps_along(problem, now, begin, [held for held, _ in stops], farthest)
             found = walk.states
             if not found:  # the next is too far for one step
                 parts = step_to(problem, now, begin, stops[0][0], turn=walk.turn, farthest=farthest)

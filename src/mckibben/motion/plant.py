@@ -13,7 +13,7 @@ from mckibben.spec.air import Isothermal, WallHeat
 from mckibben.spec.loads import Load, Pulley
 from mckibben.spec.rig import Rig
 
-__all__ = ["Plant", "apart"]
+__all__ = ["Plant", "without_rubber"]
 
 NEAR = 1e-4
 """Distance from the pressures of a map, over their range, that counts as on an edge: a vented muscle is inside."""
@@ -62,7 +62,7 @@ class Plant:
         return cls(
             rig=rig, charts=charts, ats=[chart.at for chart in charts], edges=[_edges(chart) for chart in charts],
             rubs={k: chart.rubbing_at for k, chart in enumerate(charts) if getattr(chart, "rubbing_at", None)},
-            dead=[rig.tube + apart(chart) for chart in charts], offsets=offsets, ratios=ratios,
+            dead=[rig.tube + without_rubber(chart) for chart in charts], offsets=offsets, ratios=ratios,
             valves=[(valve.C, valve.venting, valve.b) for valve in rig.valves],
             supplied=rig.supplied, source=rig.supply.temperature, atmosphere=rig.atmosphere, around=rig.temperature,
             isothermal=isinstance(rig.air, Isothermal), exponent=rig.exponent,
@@ -104,7 +104,7 @@ def _edges(chart: Any) -> tuple[Any, Any, Any, Any]:
     return first - near, first, last, last + near
 
 
-def apart(chart: Any) -> Any:
+def without_rubber(chart: Any) -> Any:
     """Air less braid volume [m^3] of a muscle, which does not change."""
     if hasattr(chart, "apart"):  # one that has been asked before
         return chart.apart

@@ -25,7 +25,7 @@ from mckibben.spec.errors import SpecError, nearest
 from mckibben.spec.rig import Rig
 from mckibben.units import UnitError, to_si
 
-__all__ = ["check_options", "read_time", "simulate", "simulate_many"]
+__all__ = ["check_simulation", "read_time", "simulate", "simulate_many"]
 
 TOLERANCES = (1e-12, 1e-2)
 Watch = Callable[[int, int], None]
@@ -76,7 +76,7 @@ def simulate(
     """
     _check(rig)
     end = read_time(until)
-    check_options(points, tolerance, method)
+    check_simulation(points, tolerance, method)
     charts = maps_of(rig, chart)
     return _one(rig, charts, end, points, tolerance, method, watch)
 
@@ -121,7 +121,7 @@ def simulate_many(
     """
     given = list(rigs)
     end = read_time(until)
-    check_options(points, tolerance, method)
+    check_simulation(points, tolerance, method)
     for k, rig in enumerate(given):
         _numbered(k, _check, rig)
     maps = [_numbered(k, maps_of, rig, chart) for k, rig in enumerate(given)]
@@ -196,7 +196,7 @@ def _check(rig: Any) -> None:
         )
 
 
-def check_options(points: int, tolerance: float, method: str, who: str = "simulate") -> None:
+def check_simulation(points: int, tolerance: float, method: str, who: str = "simulate") -> None:
     """SpecError for options out of range."""
     if isinstance(points, bool) or not isinstance(points, int) or not 2 <= points <= 1_000_000:
         raise SpecError(f"{who}.points", points, "must be a whole number from 2 to 1000000")

@@ -1,4 +1,4 @@
-"""Along the rows of a motion once more, as a function of the numbers of its rig that JAX can differentiate.
+"""RowEnd the rows of a motion once more, as a function of the numbers of its rig that JAX can differentiate.
 
 The steps are those of Dormand and Prince, as SciPy's RK45 has them. They stay what parts of their stretches they were;
 the stretches themselves move with the numbers: a jump with its time, the end of a mode with the state (page of motion).
@@ -19,17 +19,17 @@ from mckibben.motion.plant import Plant
 from mckibben.motion.regime import Rates, Seen
 from mckibben.motiongradients.moments import Source, commanding, moment, outer_of, value
 from mckibben.motiongradients.rows import Rows
-from mckibben.motiongradients.sampled import Memory, commanded, first_memory, sampled
+from mckibben.motiongradients.sampled import PIDMemory, commanded, first_memory, sampled
 from mckibben.motiongradients.traced import TracedMode, TracedRegime
 
-__all__ = ["Along", "Way", "along"]
+__all__ = ["Pattern", "RowEnd", "gone_along"]
 
 A, B, C = (np.array(one) for one in (RK45.A, RK45.B, RK45.C))
 STAGES = np.vstack([np.pad(A, ((0, 0), (0, 2))), np.append(B, 0.0)]), np.append(C, 1.0)
 """Weights and times of the stages; the last one is the end of the step."""
 
 
-class Way(NamedTuple):
+class Pattern(NamedTuple):
     """What is the same for all motions of one kind of rig."""
 
     sources: tuple[Source, ...]
@@ -37,7 +37,7 @@ class Way(NamedTuple):
     kept: int  #: commands that are on their way through a valve's dead time at most
 
 
-class Along(NamedTuple):
+class RowEnd(NamedTuple):
     """What is there at the end of a row, before what happens there."""
 
     y: Any
@@ -45,12 +45,12 @@ class Along(NamedTuple):
     muscles: list[Seen]
 
 
-def along(way: Way, plant: Plant, y: Any, rows: Rows) -> Along:
+def gone_along(way: Pattern, plant: Plant, y: Any, rows: Rows) -> RowEnd:
     """All rows, from the state at the start; arrays over rows."""
     rig, marks = plant.rig, _marks(way, plant, rows)
 
     @jax.checkpoint  # backwards, a row is gone through again: less to keep and to move
-    def step(carry: tuple[Any, Along, Memory], row: tuple[Rows, Any]) -> tuple[Any, Along]:
+    def step(carry: tuple[Any, RowEnd, PIDMemory], row: tuple[Rows, Any]) -> tuple[Any, RowEnd]:
         (begin, at, memory), (now, mark) = carry, row
         regime = _regime(way, plant, now, commanded(way.sources, rig, memory, now.piece))
         mark = jnp.where(now.seeks > 0, begin - _margin(way, regime, now, at) / now.rate, mark)
@@ -60,11 +60,11 @@ def along(way: Way, plant: Plant, y: Any, rows: Rows) -> Along:
         landed = _landed(way, plant, now, at)
         return (jnp.where(now.b == 1.0, mark, begin), landed, memory), at
 
-    first = Along(y, jnp.zeros(()), [_arrays(Seen(*[0.0] * len(Seen._fields)))] * plant.n)
+    first = RowEnd(y, jnp.zeros(()), [_arrays(Seen(*[0.0] * len(Seen._fields)))] * plant.n)
     return jax.lax.scan(step, (jnp.zeros(()), first, first_memory(plant.n, way.kept)), (rows, marks))[1]
 
 
-def _marks(way: Way, plant: Plant, rows: Rows) -> Any:
+def _marks(way: Pattern, plant: Plant, rows: Rows) -> Any:
     """The next mark of each row, as far as the state has no part in it."""
     times = jnp.asarray(rows.time)
     for s, source in enumerate(way.sources):
@@ -72,7 +72,7 @@ def _marks(way: Way, plant: Plant, rows: Rows) -> Any:
     return times
 
 
-def _regime(way: Way, plant: Plant, row: Rows, commands: list[Any]) -> TracedRegime:
+def _regime(way: Pattern, plant: Plant, row: Rows, commands: list[Any]) -> TracedRegime:
     """How the rig moves along a row: `commands` are those that controllers gave, None for signals."""
     rig = plant.rig
 
@@ -95,15 +95,15 @@ def _regime(way: Way, plant: Plant, row: Rows, commands: list[Any]) -> TracedReg
     return TracedRegime(plant=plant, mode=mode, commands=[follows(k) for k in range(plant.n)], outer=outer)
 
 
-def _step(regime: TracedRegime, begin: Any, end: Any, at: Along) -> Along:
+def _step(regime: TracedRegime, begin: Any, end: Any, at: RowEnd) -> RowEnd:
     """One step of order 5, and what is seen at its end."""
     h, y = end - begin, at.y
 
-    def stage(carry: tuple[Any, Along], one: tuple[Any, Any, Any]) -> tuple[Any, None]:
+    def stage(carry: tuple[Any, RowEnd], one: tuple[Any, Any, Any]) -> tuple[Any, None]:
         (slopes, _), (i, weights, c) = carry, one
         there = y + h * (weights @ slopes)
         rates = regime.rates(begin + c * h, list(there))
-        seen = Along(there, rates.push, [_arrays(one) for one in rates.muscles])
+        seen = RowEnd(there, rates.push, [_arrays(one) for one in rates.muscles])
         return (slopes.at[i].set(_stack(rates.state)), seen), None
 
     count = len(STAGES[1])
@@ -120,7 +120,7 @@ def _stack(state: list[Any]) -> Any:
     return jnp.stack([jnp.asarray(one, float) for one in state])
 
 
-def _margin(way: Way, regime: TracedRegime, row: Rows, at: Along) -> Any:
+def _margin(way: Pattern, regime: TracedRegime, row: Rows, at: RowEnd) -> Any:
     """How far from its end the mode is that a row leads to the end of."""
     mode: Any = regime.mode
 
@@ -132,7 +132,7 @@ def _margin(way: Way, regime: TracedRegime, row: Rows, at: Along) -> Any:
     return jnp.stack([of(one) for one in way.kinds])[row.seeks - 1] if way.kinds else 0.0
 
 
-def _landed(way: Way, plant: Plant, row: Rows, at: Along) -> Along:
+def _landed(way: Pattern, plant: Plant, row: Rows, at: RowEnd) -> RowEnd:
     """The state after what happens at the end of a row."""
     states = [at.y, *(_stack(landed(plant, list(at.y), one)) for one in way.kinds)]
     return at._replace(y=jnp.stack(states)[row.ends])

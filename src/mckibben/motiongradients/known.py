@@ -17,21 +17,21 @@ from mckibben.motion.drive import drive
 from mckibben.motion.plant import Plant
 from mckibben.motion.regime import FIRST, PER
 from mckibben.motion.start import Begun, at_rest
-from mckibben.motiongradients.along import Way
+from mckibben.motiongradients.along import Pattern
 from mckibben.motiongradients.moments import commanding, outer_of
-from mckibben.motiongradients.rows import Begin, Rows, empty, rows_of
+from mckibben.motiongradients.rows import Begin, Rows, blank_rows, table_of
 from mckibben.spec.controls import PID
 from mckibben.spec.errors import SpecError
 from mckibben.spec.rig import Rig
 from mckibben.spec.signal import TINY
 
-__all__ = ["Asked", "Known", "concrete", "kept_by", "known"]
+__all__ = ["Beforehand", "Request", "concrete", "kept_by", "simulated_at"]
 
 LEAST = 64
 """Fewest rows of a table. Tables come in few sizes, so that little is compiled anew."""
 
 
-class Asked(NamedTuple):
+class Request(NamedTuple):
     """What is asked of a simulation."""
 
     until: float
@@ -45,7 +45,7 @@ class Asked(NamedTuple):
         return np.linspace(0.0, self.until, self.points)
 
 
-class Known(NamedTuple):
+class Beforehand(NamedTuple):
     """What derivatives need to know of a motion."""
 
     begin: Begin
@@ -71,37 +71,37 @@ def kept_by(rig: Rig) -> int:
     return int(1 << (most - 1).bit_length())
 
 
-def known(rig: Rig, charts: Sequence[Any], way: Way, asked: Asked) -> Known:
+def simulated_at(rig: Rig, charts: Sequence[Any], way: Pattern, asked: Request) -> Beforehand:
     """A motion of a rig whose numbers may be traced."""
     plain = concrete(rig)
     if plain is not None:
         return _simulated(plain, charts, way, asked, 0)
     leaves, tree = jax.tree.flatten(jax.tree.map(jax.lax.stop_gradient, rig))
 
-    def called(numbers: list[Any]) -> Known:
+    def called(numbers: list[Any]) -> Beforehand:
         again = jax.tree.unflatten(tree, [float(number) for number in numbers])
         return _simulated(again, charts, way, asked, asked.room)
 
     n = len(rig.muscles)
     begin = Begin(np.zeros(()), np.zeros((), int), np.zeros((), int), np.zeros(n, bool), np.zeros(n))
-    form = Known(begin, empty(asked.room, len(way.sources), n), np.zeros(asked.points, int))
+    form = Beforehand(begin, blank_rows(asked.room, len(way.sources), n), np.zeros(asked.points, int))
     shapes = jax.tree.map(lambda one: jax.ShapeDtypeStruct(one.shape, one.dtype), form)
     return jax.pure_callback(called, shapes, leaves, vmap_method="sequential")
 
 
-def _simulated(rig: Rig, charts: Sequence[Any], way: Way, asked: Asked, room: int) -> Known:
+def _simulated(rig: Rig, charts: Sequence[Any], way: Pattern, asked: Request, room: int) -> Beforehand:
     """The motion of a rig whose numbers are known; in as many rows as there is room for, where that is said."""
     begun = at_rest(Plant.of(rig, charts))
     if kept_by(rig) > way.kept:
         said = f"holds back more than {way.kept} commands of the controller, more than there is room for inside jit"
         raise SpecError("valve.delay", allowed=said, advice="give it outside of what is compiled")
     done = drive(begun, Commands(rig, asked.until), asked.times, "RK45", asked.tolerance, _unwatched, kinks=True)
-    rows, at = rows_of(begun.plant, begun.mode, done, asked.until, asked.times, way.sources, way.kinds)
+    rows, at = table_of(begun.plant, begun.mode, done, asked.until, asked.times, way.sources, way.kinds)
     count = len(rows.a)
     if room and count > room:
         said = f"is too small: the motion takes {count} steps"
         raise SpecError("motion_response.room", room, said, f"give room={_size(count)}")
-    return Known(_begin(begun), _padded(rows, room or _size(count)), at)
+    return Beforehand(_begin(begun), _padded(rows, room or _size(count)), at)
 
 
 def _unwatched(done: int, total: int) -> None: ...
@@ -127,6 +127,6 @@ def _size(count: int) -> int:
 
 def _padded(rows: Rows, size: int) -> Rows:
     """Further rows after the last one, in which nothing happens."""
-    spare = empty(size - len(rows.a), rows.piece.shape[1], rows.target.shape[1])
+    spare = blank_rows(size - len(rows.a), rows.piece.shape[1], rows.target.shape[1])
     spare = spare._replace(time=spare.time + rows.time[-1])
     return Rows(*(np.concatenate(pair) for pair in zip(rows, spare, strict=True)))

@@ -10,13 +10,14 @@ from jaxtyping import Float
 
 from mckibben.compiled.arrays import Array
 from mckibben.compiled.kernel import kernel
+from mckibben.experiments.response import BEYOND, honest
 from mckibben.motion.energies import of_muscles, of_rig
 from mckibben.motion.maps import maps_of
-from mckibben.motion.plant import Plant, apart
+from mckibben.motion.plant import Plant, without_rubber
 from mckibben.motion.regime import Seen
-from mckibben.motion.simulate import check_options, read_time
-from mckibben.motiongradients.along import Way, along
-from mckibben.motiongradients.known import Asked, Known, concrete, kept_by, known
+from mckibben.motion.simulate import check_simulation, read_time
+from mckibben.motiongradients.along import Pattern, gone_along
+from mckibben.motiongradients.known import Beforehand, Request, concrete, kept_by, simulated_at
 from mckibben.motiongradients.moments import commanding, sources_of
 from mckibben.motiongradients.rows import kinds_of
 from mckibben.motiongradients.starting import started
@@ -29,7 +30,6 @@ from mckibben.units import is_traced
 
 __all__ = ["motion_response"]
 
-BEYOND = 1e308
 ROOM = 1024
 """Rows of a motion whose numbers are not there yet."""
 KEPT = 16
@@ -57,11 +57,11 @@ def motion_response(
         room: steps of a motion for which there is room inside `jit` and `vmap`, where their number cannot be known.
 
     Returns:
-        Arrays over the times, in SI units, of two muscles over (time, muscle): "time" and what `Motion.data` has as
-        numbers, such as length, speed, force, pressure, consumed and angle. Where a motion stops early they are NaN,
-        and derivatives there not finite. The map is held: derivatives by the muscle's own numbers are not finite, nor
-        is that by a friction of 0. At a command of exactly 0, where the flow has a kink, the derivative is that of
-        opening to the supply; at a delay of 0 and a jump at time 0 that of a later one.
+        Arrays over the times, of two muscles over times and muscles, in SI units. They are "time" and what
+        `Motion.data` has as numbers, such as length, speed, force, pressure, consumed and angle. Where a motion stops
+        early they are NaN, and derivatives there not finite. The map is held: derivatives by the muscle's own numbers
+        are not finite, nor is that by a friction of 0. At a command of exactly 0, where the flow has a kink, the
+        derivative is that of opening to the supply; at a delay of 0 and a jump at time 0 that of a later one.
 
     Raises:
         SpecError: as `simulate`; for what has no derivatives; for a map that is not one of `chart`. Inside `jit` and
@@ -79,18 +79,18 @@ def motion_response(
         said = "such as mk.Rig(muscle=..., load=..., supply=..., valve=...)"
         raise SpecError("motion_response.rig", rig, "must be a Rig", said)
     end = read_time(until, "motion_response.until")
-    check_options(points, tolerance, "RK45", "motion_response")
+    check_simulation(points, tolerance, "RK45", "motion_response")
     if isinstance(room, bool) or not isinstance(room, int) or not ROOMS[0] <= room <= ROOMS[1]:
         raise SpecError("motion_response.room", room, f"must be a whole number from {ROOMS[0]} to {ROOMS[1]}")
     _refuse(rig)
     plain = concrete(rig)
     charts = _charts(rig, plain, chart)
-    tables = tuple(TracedMap(one.table, apart(one)) for one in charts)
+    tables = tuple(TracedMap(one.table, without_rubber(one)) for one in charts)
     friction = getattr(rig.load, "friction", 0.0)
     kinds = kinds_of(Plant.of(rig, tables), is_traced(friction) or friction > 0.0)
-    way = Way(sources_of(rig), kinds, KEPT if plain is None else kept_by(plain))
-    asked = Asked(end, points, tolerance, room)
-    return _response(way, tables, rig, known(rig, charts, way, asked), asked.times)
+    way = Pattern(sources_of(rig), kinds, KEPT if plain is None else kept_by(plain))
+    asked = Request(end, points, tolerance, room)
+    return _response(way, tables, rig, simulated_at(rig, charts, way, asked), asked.times)
 
 
 def _refuse(rig: Rig) -> None:
@@ -126,24 +126,23 @@ def _charts(rig: Rig, plain: Rig | None, chart: Any) -> tuple[Any, ...]:
 
 @kernel
 def _response(
-    way: Way, tables: tuple[TracedMap, ...], rig: Rig, known: Known, times: Any
+    way: Pattern, tables: tuple[TracedMap, ...], rig: Rig, known: Beforehand, times: Any
 ) -> dict[str, Float[Array, " ..."]]:
     plant, y = started(Plant.of(rig, tables), known.begin)
-    found = jax.tree.map(lambda one: one[known.at], along(way, plant, y, known.rows))
+    found = jax.tree.map(lambda one: one[known.at], gone_along(way, plant, y, known.rows))
     seen = {name: jnp.stack([getattr(one, name) for one in found.muscles], axis=1) for name in Seen._fields}
     muscles = of_muscles(plant, found.y, seen)
     answer = muscles if plant.n > 1 else {name: values[:, 0] for name, values in muscles.items()}
     answer |= of_rig(plant, found.y, muscles)
     unknown, everything = _still(rig)
-    good, beyond = known.at >= 0, jnp.where(known.at >= 0, 0.0, BEYOND)
+    good = known.at >= 0
     large = jnp.where(known.begin.at >= 0, BEYOND, 0.0)  # always, but no compiler may multiply it by itself beforehand
-    lost = everything * beyond * beyond + unknown * large * large
+    lost = unknown * large * large
 
-    def honest(values: Array) -> Array:
-        shape = (-1, *(1,) * (values.ndim - 1))
-        return jnp.where(good.reshape(shape), values, jnp.nan) + lost.reshape(shape)
+    def told(values: Array) -> Array:
+        return honest(values, good.reshape(-1, *(1,) * (values.ndim - 1)), everything) + lost
 
-    return {"time": jnp.asarray(times)} | {name: honest(values) for name, values in answer.items()}
+    return {"time": jnp.asarray(times)} | {name: told(values) for name, values in answer.items()}
 
 
 def _still(rig: Rig) -> tuple[Any, Any]:

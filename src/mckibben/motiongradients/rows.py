@@ -19,7 +19,7 @@ from mckibben.motiongradients.moments import Source, commanding, moments
 from mckibben.spec.controls import PID
 from mckibben.spec.signal import TINY
 
-__all__ = ["Begin", "Rows", "empty", "kinds_of", "rows_of"]
+__all__ = ["Begin", "Rows", "blank_rows", "kinds_of", "table_of"]
 
 CLOSE = 1e-12
 """Part of the whole time by which a mark may miss another one that it is meant to be."""
@@ -52,9 +52,7 @@ class Rows(NamedTuple):
     slack: Any  #: (rows, muscles)
     flows: Any  #: (rows, muscles) how air flows, as `flows_of` has it
     ends: Any  #: what happens at the end of a row: number in `kinds_of`, counted from 1; 0 nothing
-    seeks: (
-        Any  #: what ends a mode when the state says so, likewise: a row goes to where it does, by one step of Newton's
-    )
+    seeks: Any  #: likewise what ends a mode when the state says so: by one step of Newton's a row goes to where it does
     rate: Any  #: how fast its margin falls there
 
 
@@ -74,7 +72,7 @@ def kinds_of(plant: Plant, frictional: bool) -> tuple[Ended, ...]:
     return tuple(found)
 
 
-def empty(count: int, sources: int, muscles: int) -> Rows:
+def blank_rows(count: int, sources: int, muscles: int) -> Rows:
     """Rows in which nothing happens."""
     whole, number, flag = np.zeros(count, np.int64), np.zeros(count), np.zeros(count, bool)
     return Rows(
@@ -137,7 +135,7 @@ class _Writer:
             self.next += 1
 
 
-def rows_of(
+def table_of(
     plant: Plant, begun: Mode, done: Driven, until: float, times: np.ndarray, sources: tuple[Source, ...],
     kinds: tuple[Ended, ...],
 ) -> tuple[Rows, np.ndarray]:  # fmt: skip
@@ -160,6 +158,6 @@ def rows_of(
         if not woken:
             writer.jumps(stretch, end + near)
     columns = list(zip(*writer.rows, strict=True))
-    made = empty(len(writer.rows), len(writer.sources), plant.n)
+    made = blank_rows(len(writer.rows), len(writer.sources), plant.n)
     filled = [np.array(column, like.dtype).reshape(like.shape) for column, like in zip(columns, made, strict=True)]
     return Rows(*filled), writer.at

@@ -13,10 +13,10 @@ from mckibben.spec.controls import PID, Controlled
 from mckibben.spec.rig import Rig
 from mckibben.spec.signal import TINY
 
-__all__ = ["Memory", "commanded", "first_memory", "sampled"]
+__all__ = ["PIDMemory", "commanded", "first_memory", "sampled"]
 
 
-class Memory(NamedTuple):
+class PIDMemory(NamedTuple):
     """What the controllers of the muscles remember."""
 
     integral: Any  #: (muscles)
@@ -25,13 +25,13 @@ class Memory(NamedTuple):
     said: Any  #: (muscles, so many) commands that have not all reached the valve
 
 
-def first_memory(muscles: int, kept: int) -> Memory:
+def first_memory(muscles: int, kept: int) -> PIDMemory:
     """Before the first sample."""
     none = jnp.zeros(muscles)
-    return Memory(none, none, none, jnp.zeros((muscles, kept)))
+    return PIDMemory(none, none, none, jnp.zeros((muscles, kept)))
 
 
-def commanded(sources: tuple[Source, ...], rig: Rig, memory: Memory, piece: Any) -> list[Any]:
+def commanded(sources: tuple[Source, ...], rig: Rig, memory: PIDMemory, piece: Any) -> list[Any]:
     """The command of each muscle whose controller gives it, as it has reached the valve; None for the others."""
     found: list[Any] = [None] * len(rig.muscles)
     for s, (what, k) in enumerate(sources):
@@ -43,18 +43,18 @@ def commanded(sources: tuple[Source, ...], rig: Rig, memory: Memory, piece: Any)
     return found
 
 
-def sampled(sources: tuple[Source, ...], rig: Rig, memory: Memory, row: Rows, seen: Seen, y: Any) -> Memory:
+def sampled(sources: tuple[Source, ...], rig: Rig, memory: PIDMemory, row: Rows, seen: Seen, y: Any) -> PIDMemory:
     """The memory after a row, at whose end there may be a sample of what is seen of the first muscle."""
     for s, (what, k) in enumerate(sources):
         if what == "sample":
             pid = commanding(rig, k)[0]
             after = _sampled(pid, k, memory, row, y[0] if pid.of == Controlled.ANGLE else getattr(seen, str(pid.of)))
             due = (row.source == s) & (row.b == 1.0)
-            memory = Memory(*(jnp.where(due, new, old) for new, old in zip(after, memory, strict=True)))
+            memory = PIDMemory(*(jnp.where(due, new, old) for new, old in zip(after, memory, strict=True)))
     return memory
 
 
-def _sampled(pid: PID, k: int, memory: Memory, row: Rows, now: Any) -> Memory:
+def _sampled(pid: PID, k: int, memory: PIDMemory, row: Rows, now: Any) -> PIDMemory:
     sign = -1.0 if pid.of == Controlled.LENGTH else 1.0
     t = jnp.asarray(row.number, float) * pid.every
     error = sign * (value(pid.target, row.target[k], t + TINY) - now)
@@ -65,7 +65,7 @@ def _sampled(pid: PID, k: int, memory: Memory, row: Rows, now: Any) -> Memory:
     wanted = pid.kp * error + memory.integral[k] + step + pid.kd * rate
     command = jnp.where(wanted < pid.low, pid.low, jnp.where(wanted > pid.high, pid.high, wanted))
     summed = (command == wanted) | ((wanted - command) * step < 0.0)
-    return Memory(
+    return PIDMemory(
         memory.integral.at[k].set(memory.integral[k] + jnp.where(summed, step, 0.0)), memory.seen.at[k].set(now),
         memory.rate.at[k].set(rate), memory.said.at[k, row.number % memory.said.shape[1]].set(command),
     )  # fmt: skip

@@ -15,7 +15,7 @@ from mckibben.motion.flow import LAMINAR, RHO, TEMPERATURE
 from mckibben.motion.regime import Regime, Seen
 from mckibben.potential.evaluate import Table, Values, evaluate
 
-__all__ = ["TracedMap", "TracedMode", "TracedRegime", "flow"]
+__all__ = ["TracedMap", "TracedMode", "TracedRegime"]
 
 
 class _Numbers:
@@ -134,7 +134,7 @@ class TracedRegime(Regime):
         fills, out = flows < 6, flows % 6 >= 3
         other, hot = jnp.where(fills, plant.supplied, plant.atmosphere), self._warmth(k, T)
         before, after = jnp.where(out, p, other), jnp.where(out, other, p)
-        flowing = flow(jnp.where(fills, C, -vent) * u, b, before, hot, after, flows % 3)
+        flowing = _flow(jnp.where(fills, C, -vent) * u, b, before, hot, after, flows % 3)
         net = jnp.where(out, -flowing, flowing)
         inflow, outflow = jnp.where(fills, net, 0.0), jnp.where(fills, 0.0, -net)
         if plant.isothermal:
@@ -150,7 +150,7 @@ class TracedRegime(Regime):
         return (inflow - outflow) * self._warmth(k, T)
 
 
-def flow(C: Any, b: Any, before: Any, temperature: Any, after: Any, how: Any) -> Any:
+def _flow(C: Any, b: Any, before: Any, temperature: Any, after: Any, how: Any) -> Any:
     """`mass_flow` on arrays: 0 choked, 1 subsonic, 2 laminar; every branch of it is finite, with its slopes."""
     choked = C * RHO * before * jnp.sqrt(TEMPERATURE / temperature)
     edge = jnp.maximum(LAMINAR, b)

@@ -179,9 +179,8 @@ def resolved(signal: S, unit: str, field: str, low: float = -math.inf, high: flo
             made[declared.name] = tuple(
                 _si(one, unit, f"{field}.{declared.name}[{k}]", low, high) for k, one in enumerate(value)
             )
-    if isinstance(signal, Sine) and not any(
-        is_traced(one) for one in made.values()
-    ):  # what must be in range is the sum
+    known = not any(is_traced(one) for one in made.values())
+    if isinstance(signal, Sine) and known:  # what must be in range is the sum
         top = abs(made["amplitude"])
         for end in (made["mean"] - top, made["mean"] + top):
             _check(end, signal.amplitude, unit, f"{field}.amplitude", low, high)
