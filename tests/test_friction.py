@@ -292,9 +292,21 @@ def test_many_states_at_once_or_one_by_one(monkeypatch: pytest.MonkeyPatch) -> N
     assert at_once.data["iterations"].sum() < one_by_one.data["iterations"].sum()
 
 
+@pytest.mark.parametrize("ends", ["clamped", "pinned"])
+def test_filled_from_rest_without_a_constant_part(ends: str) -> None:
+    """As made no tension presses on the crossings, and what rounding leaves of it is no moment that has to settle."""
+    forces = []
+    for constant in (0.0, 1e-8):
+        muscle = rubbing(mk.Friction(coefficient=0.3, arm="0.1 mm", constant=f"{constant} N mm"), ends=ends)
+        filled = mk.run(muscle, mk.Isometric(length="105 mm", pressure=["0 bar", "1 bar"]), tolerance=1e-3)
+        assert filled.status == "complete"
+        forces.append(filled.force)
+    assert_allclose(forces[0], forces[1], rtol=2e-5)
+
+
 def test_error_estimates_hold() -> None:
     """Those of few points against many: at a fixed length, where the border of sticking crossings wanders."""
-    test = mk.Isometric(length="105 mm", pressure="0 to 1 to 0 bar", points=15)
+    test = mk.Isometric(length="110 mm", pressure="0 to 1 to 0 bar", points=15)
     rough, fine = mk.run(rubbing(BOTH), test, tolerance=1e-2), mk.run(rubbing(BOTH), test, tolerance=1e-6)
     load = np.maximum(np.abs(fine.force), np.pi * RADIUS**2 * fine.pressure)
     estimate = rough.data["error_estimate"].values
@@ -312,7 +324,7 @@ def test_error_estimates_know_the_steps() -> None:
     assert 1e-3 < off.max() < 2e-2
     estimate, fine = few.data["error_estimate"].values, many.data["error_estimate"].values[::6]
     assert (off < estimate + fine).all()
-    assert fine.max() < 0.7 * estimate.max() < 5e-2
+    assert fine.max() < 0.7 * estimate.max() < 8e-2
 
 
 def test_with_fibres_that_stretch_and_roll() -> None:

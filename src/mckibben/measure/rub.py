@@ -38,6 +38,9 @@ ROUNDS = 20
 """Sets of moments at most; each is closer than the one before by about mu a/l, some hundredth."""
 SETTLED = 1e-8
 """Largest change of a moment, or of the chamber's limit, in the last round over the largest one, at most."""
+NOTHING = 1e-12
+"""Moments are none whose work, where all crossings turn by 1 rad, is less than this over the unit of energy: those that
+the rounding of a tension leaves where there is none."""
 ROUGH, SHARE = 1e-4, 1e-2
 """What is enough of `CLOSE` in a round whose moments are not the last: the first one, and over the change of moments in
 the round before in the others."""
@@ -260,12 +263,15 @@ def _stuck(memory: Remembered, p: Parameters) -> Remembered:
 def _change(new: Remembered, old: Remembered, on: Placed) -> Array:
     """Largest change of a moment over the largest one, and the same of the forces at which the chamber slides.
 
-    Forces that would move the chamber by less than `CLOSE` of H0 are none: they are not told by their largest.
+    What is none is not told by its largest: moments by `NOTHING`, forces that would move the chamber by less than
+    `CLOSE` of H0.
     """
-    change = jnp.abs(new.moment - old.moment).max() / jnp.maximum(new.moment.max(), 1e-300)
+    p = on.p
+    least = NOTHING / SETTLED * on.unit[0] / (p.N**2 * p.H0 / (4.0 * jnp.pi * p.R0))
+    change = jnp.abs(new.moment - old.moment).max() / jnp.maximum(new.moment.max(), least)
     if new.slid is None:
         return change
-    least = CLOSE / SETTLED * on.unit[0] / on.p.H0**2
+    least = CLOSE / SETTLED * on.unit[0] / p.H0**2
     return jnp.maximum(change, jnp.abs(new.limit - old.limit).max() / jnp.maximum(new.limit.max(), least))
 
 
