@@ -4,28 +4,14 @@ The environment is set before anything imports JAX or the package, which is why 
 """
 
 import gc
-import os
 from collections.abc import Iterator
-from pathlib import Path
 from typing import Any
 
 import pytest
 from browsers import CHROMIUM, FLAGS, Watched, served
+from jax_settings import enter
 
-CACHE = Path(__file__).parent.parent / ".pytest_cache" / "kernels"
-
-os.environ["JAX_PLATFORMS"] = "cpu"
-os.environ["JAX_NUMPY_DTYPE_PROMOTION"] = "strict"
-os.environ["MPLBACKEND"] = "Agg"
-# Kernels are kept between runs, in one folder for all xdist workers, and compiled with the least optimisation: a test
-# calls them a few times.
-os.environ.setdefault("MCKIBBEN_CACHE", str(CACHE))
-os.environ.setdefault("MCKIBBEN_COMPILE", "quick")
-# So does what tests compile by `jax.jit` themselves (compiled/options.py says more of these).
-os.environ.setdefault(
-    "XLA_FLAGS",
-    "--xla_backend_optimization_level=0 --xla_cpu_use_fusion_emitters=false --xla_cpu_parallel_codegen_split_count=1",
-)
+enter()
 
 # Traces of JAX are many objects that live long: to look through them as often as Python does costs a twelfth of all.
 gc.set_threshold(100_000, 20, 20)

@@ -1,6 +1,6 @@
 """Random muscles with random options: does any combination of effects give a wrong number?
 
-    python validation/random_options.py [--count 300] [--first 0] [--again 88 101 ...] [--report-only]
+    python validation/random_options.py [--count 300] [--first 0] [--report-only]
 
 What must hold of every state, whatever is switched on: forces and volumes are the slopes of one potential, W = U - P V
 with dW = F dh - V dP; the error estimate covers the difference to a finer solution of the same state; a muscle that is
@@ -8,8 +8,6 @@ turned around has the mirrored state; and the state stays where the force that w
 gives no stable state, the other methods of validation/judges.py seek one, and where they find none either the branch is
 followed by arclength to where it turns back. Results go line by line to
 out/random_options.jsonl; a run that was cut short goes on where it stopped. Writes validation/random_options.md.
-
-With --again the cases that are named are judged by themselves; writes validation/random_options_again.md.
 """
 
 import argparse
@@ -36,10 +34,6 @@ from mckibben.solver.find import find, refine
 from mckibben.solver.held import Held
 
 FILE, PAGE = OUT / "random_options.jsonl", Path(__file__).with_name("random_options.md")
-AGAIN = (
-    "These cases of [the whole sample](random_options.md) were judged by themselves (`--again`), after what they had "
-    "found was looked into: those with a check that failed there, and others with the same options."
-)
 FINE = (64, 128, 256)
 """Half-length unknowns of the states that judge: as many as it takes until what is estimated of their own error is
 below what they judge."""
@@ -179,7 +173,7 @@ def words(options: dict[str, Any]) -> str:
     return ", ".join(said)
 
 
-def report(rows: list[dict[str, Any]], page: Path) -> None:
+def report(rows: list[dict[str, Any]]) -> None:
     """The page."""
     verdicts = [row["found"]["verdict"] for row in rows]
     lines = [
@@ -187,7 +181,6 @@ def report(rows: list[dict[str, Any]], page: Path) -> None:
         "",
         "Written by `python validation/random_options.py`. " + " ".join((__doc__ or "").split("\n\n")[2].split()),
         "",
-        *([AGAIN, ""] if page != PAGE else []),
         f"{len(rows)} muscles, {len({str(row['case']['options']) for row in rows})} combinations of options (one for "
         f"{EACH} muscles each; seed {SEED}). Numbers as in `validation/sample.py`, options as in "
         "`validation/options.py`; lengths from 0.75 of the rest length to 0.97 of full extension or of a fibre, "
@@ -252,7 +245,7 @@ def report(rows: list[dict[str, Any]], page: Path) -> None:
             found = row["found"]
             place = f"{1e3 * found.get('length', np.nan):.4g} | {1e-5 * found.get('pressure', np.nan):.4g}"
             lines.append(f"| {row['case']['id']} | {words(row['case']['options'])} | {place} | {'; '.join(said)} |")
-    page.write_text("\n".join(lines) + "\n", encoding="utf-8")
+    PAGE.write_text("\n".join(lines) + "\n", encoding="utf-8")
 
 
 def main() -> None:
@@ -260,15 +253,12 @@ def main() -> None:
     parser.add_argument("--count", type=int, default=300)
     parser.add_argument("--first", type=int, default=0)
     parser.add_argument("--workers", type=int, default=1)
-    parser.add_argument("--again", type=int, nargs="+")
     parser.add_argument("--report-only", action="store_true")
     asked = parser.parse_args()
-    file, page = (one.with_stem(one.stem + ("_again" if asked.again else "")) for one in (FILE, PAGE))
     if not asked.report_only:
         OUT.mkdir(exist_ok=True)
-        which = asked.again or range(asked.first, asked.first + asked.count)
-        write_lines(one, [drawn(k) for k in which], file, asked.workers)
-    report([row for _, row in sorted(read(file).items())], page)
+        write_lines(one, [drawn(k) for k in range(asked.first, asked.first + asked.count)], FILE, asked.workers)
+    report([row for _, row in sorted(read(FILE).items())])
 
 
 if __name__ == "__main__":

@@ -43,12 +43,10 @@ finds a converged state of admissible shape that is stable there. The judges (`v
 the default call gave no stable state: two long paths (pressure first, pressure last; 2 x 24 states) and six searches
 from random shapes.
 
-Pages of their own: [random options](random_options.md), whether any combination of effects gives a wrong number, and
-what failed there [judged again](random_options_again.md); [random friction](random_friction.md), the same of muscles
-that rub, along closed paths (37 of 64 so far, of which 36 were run before error estimates knew the steps of a path);
-[chambers that touch in part](touching.md), [programmed braids](programmed.md) and [paths with
-friction](friction_steps.md), whether the error estimate covers the true error; [fits](recovery.md), whether intervals
-hold the truth."""
+Pages of their own: [random options](random_options.md), whether any combination of effects gives a wrong number;
+[random friction](random_friction.md), the same of muscles that rub, along closed paths; [chambers that touch in
+part](touching.md), [programmed braids](programmed.md) and [paths with friction](friction_steps.md), whether the error
+estimate covers the true error; [fits](recovery.md), whether intervals hold the truth."""
 
 SAID = """{count} random muscles with one target each ({shares}; seed {seed}; ranges in `validation/sample.py`), by
 `python validation/random_muscles.py --sample {name}`."""
