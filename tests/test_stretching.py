@@ -11,8 +11,13 @@ from scipy.interpolate import PchipInterpolator
 from scipy.optimize import brentq
 
 import mckibben as mk
+from mckibben.measure.survey import error_bound, read_states
 from mckibben.model.axial import axial_energy, axial_tension
 from mckibben.model.parameters import parameters
+from mckibben.search.finer import estimated_error
+from mckibben.solver.bench import Bench
+from mckibben.solver.find import find, refine
+from mckibben.solver.held import Held
 from mckibben.spec.text import muscle_from_mapping, to_mapping, to_toml
 
 pytestmark = pytest.mark.effects
@@ -252,3 +257,22 @@ def test_a_region_without_a_longest_length_says_so() -> None:
     labels = [text.get_text() for text in axes.get_legend().get_texts()]
     assert "admissible and stable, with no longest length" in labels
     assert "full extension" not in labels
+
+
+def test_the_estimate_knows_where_fibres_go_slack() -> None:
+    """Between two points, near the fittings of a muscle that is pressed together: the sum over points errs there."""
+    muscle = stretching(braid__fibre__slack=True)
+    bench, held = Bench.of(muscle), Held.of(length=0.075, pressure=0.0)
+    b = bench.placement(held)
+    coarse = find(bench.problem(48, b), held)
+    fine = refine(coarse, bench.problem(192, b), held)
+    assert coarse.converged
+    assert fine.converged
+    off = abs(coarse.force / fine.force - 1.0)
+    seen = read_states(coarse.problem, coarse.u[None], coarse.loads[None], False)[0]
+    without = float(error_bound(seen.conserved_variation, seen.coefficient_tail)[0])
+    assert without < off < estimated_error(coarse, held) < 10.0 * off
+    slender = find(Bench.of(muscle).problem(48, b), Held.of(length=0.11, pressure=1e5))
+    told = read_states(slender.problem, slender.u[None], slender.loads[None], False)[0].missed
+    assert told is not None
+    assert float(told.length[0]) == 0.0  # taut everywhere

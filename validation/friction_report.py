@@ -40,6 +40,8 @@ def failures(row: dict[str, Any]) -> list[str]:
         said.append(f"crash: {found['reason']}")
     if "lost" in found:
         said.append(f"the same path in other steps or on other unknowns ends early: {found['lost']}")
+    if "zero: ended" in found:
+        said.append(f"with coefficients of zero {found['zero: ended']} of 3 corners are reached straight")
     if not found.get("kept", True):
         said.append("the part reached was not kept")
     if "kept" in found and found["plain"] == CORNERS[-1] + 1:

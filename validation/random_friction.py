@@ -129,7 +129,10 @@ def _nothing(muscle: mk.Muscle, test: mk.Step) -> dict[str, float]:
     """
     slides = muscle.friction is not None and muscle.friction.chamber_coefficient is not None
     none = mk.Friction(chamber_coefficient=0.0 if slides else None)
-    zero = Walked(mk.run(muscle.replace("friction", none), test, tolerance=TOLERANCE))
+    walked = mk.run(muscle.replace("friction", none), test, tolerance=TOLERANCE)
+    if walked.reached < 3:
+        return {"zero: ended": walked.reached}
+    zero = Walked(walked)
     found = {"zero: lost": float(np.abs(zero.lost).max() / (ROUNDING * np.abs(zero.energy).max()))}
     if slides:
         off = abs(zero.force[2] - zero.force[0]) / zero.load[0] + abs(zero.length[2] / zero.length[0] - 1.0)

@@ -127,16 +127,18 @@ def _moved(problem: Problem, now: Going, found: Stepped) -> Going:
     )  # fmt: skip
 
 
-def mounted(problem: Problem, here: Going, held: Held) -> Going | None:
-    """The muscle at its length as made without pressure, where it leaves the cylinder as made by so much that Newton
-    does not find there: a tube that is smaller than the braid pulls slack fibres in. It is sought from the state
-    without friction."""
-    if problem.p.friction.chamber is not None:
-        return None  # without friction it is a space of other unknowns
-    free = find(attrs.evolve(problem, p=problem.p._replace(friction=None)), held)
+def mounted(problem: Problem, here: Going, held: Held, farthest: float = np.inf) -> Going | None:
+    """The muscle as it is mounted, in one step from as made, in which no crossing turns by more than `farthest`.
+
+    Where it leaves the cylinder as made by so much that Newton does not find there (a tube that is smaller than the
+    braid pulls slack fibres in), it is sought from the state without friction.
+    """
+    basis = attrs.evolve(problem.basis, slide=False)  # type: ignore[arg-type, unused-ignore]
+    free = find(Problem.of(basis, problem.p._replace(friction=None), problem.b), held)
     own, which = rows_of(held.names, problem.loads)
-    start = here.state._replace(u=free.u, loads=free.loads)
+    start = here.state._replace(u=problem.basis.embedded(basis, free.u), loads=free.loads)
     to = targets_of((held,), problem.unit, problem.loads)[0]
     found = rub((problem.basis, own), problem.p, problem.b, start, here.outer, which, to, np.asarray(False))
     found = jax.tree.map(np.asarray, found)
-    return _moved(problem, here, found) if free.converged and found.good else None
+    near = free.converged and found.good and found.largest_turn <= farthest
+    return _moved(problem, here, found) if near else None

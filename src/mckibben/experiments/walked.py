@@ -142,4 +142,6 @@ def _pressurised(problem: Problem, here: Going, held: Held, farthest: float) -> 
     found = step_to(problem, here, legs[0], legs[1], farthest=farthest)
     if found is None and (there := mounted(problem, here, legs[0])) is not None:
         found = step_to(problem, there, legs[0], legs[1], farthest=farthest)
+    if found is None and (there := mounted(problem, here, legs[1], farthest)) is not None:
+        return there  # a chamber that slides, which hardly any pressure presses on the mesh yet, may be lost on the way
     return found

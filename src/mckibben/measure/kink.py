@@ -1,12 +1,14 @@
-"""What the quadrature misses where a chamber with a gap begins to touch the mesh between two points (theory page).
+"""What the quadrature misses where, between two points, a chamber with a gap begins to touch the mesh, or fibres that
+carry no compression go slack (theory page).
 
 Of the tube alone and of the tube held to the mesh, the energies less the work on the gap differ by k q^2/2, where q is
-the pressure by which the tube presses. The sum over the points takes one on one side and the other on the other. Its
+the pressure by which the tube presses; those of fibres that pull and of slack ones likewise, where q is their strain
+and k their axial stiffness per unit v. The sum over the points takes one on one side and the other on the other. Its
 error in the first derivatives, whose slope jumps by k q' grad q, is at most h^2/12 of that jump; of a force or a volume
 it is that times the change of q with the length or the pressure.
 """
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from typing import Any, NamedTuple
 
 import jax
@@ -16,15 +18,17 @@ from jaxtyping import Float
 
 from mckibben.compiled.arrays import Array
 from mckibben.discretise.fields import Placed, Sampling, points_at, states
-from mckibben.model.gap import borne
+from mckibben.model.angle import sin
+from mckibben.model.axial import axial_stiffness
+from mckibben.model.gap import borne, leaves
 from mckibben.model.kinematics import facing, stretches
 from mckibben.model.parameters import Number, Parameters
-from mckibben.model.point import Point
+from mckibben.model.point import Point, made_angle
 from mckibben.model.wall import lying
 from mckibben.solver.problem import Basis
 from mckibben.solver.system import System, Unknowns
 
-__all__ = ["Missed", "missed"]
+__all__ = ["Missed", "has_kinks", "missed"]
 
 WITHIN, AT_END = 1.0 / 8.0, 3.0 / 8.0
 """Largest error over h times the change of slope from point to point: between two points, and before the first.
@@ -61,20 +65,43 @@ def presses(at: Point, P: Number, p: Parameters) -> tuple[Number, Number]:
     return P * facing(at) - bears, 2.0 * jnp.pi * p.R0**2 * hoop * axial / slope
 
 
+def pulls(at: Point, P: Number, p: Parameters) -> tuple[Number, Number]:
+    """q, the strain of fibres that carry no compression, and k [J/m], their axial stiffness per unit v at rest."""
+    return at.stretch - 1.0, p.N / sin(made_angle(at, p)) * axial_stiffness(p)
+
+
+Kink = Callable[[Point, Number, Parameters], tuple[Number, Number]]
+
+
+def kinks_of(p: Parameters) -> tuple[Kink, ...]:
+    """What may have a kink along a muscle of these parameters."""
+    return ((presses,) if leaves(p) else ()) + ((pulls,) if p.slack is not None else ())
+
+
+def has_kinks(p: Parameters) -> bool:
+    """Whether the energy may have kinks along the length."""
+    return bool(kinks_of(p))
+
+
 def missed(basis: Basis, on: Placed, state: Unknowns, s: System, outer: Sampling) -> Missed:
-    """Bounds of what a state owes to kinks between its points; 0 where it touches everywhere or nowhere.
+    """Bounds of what a state owes to kinks between its points; 0 where all of it is on one side of them.
 
     The first point of `outer` is a fitting; so is its last one on a full line.
     """
+    each = [_missed(kink, basis, on, state, s, outer) for kink in kinks_of(on.p)]
+    return jax.tree.map(lambda *bounds: sum(bounds[1:], bounds[0]), *each)
+
+
+def _missed(kink: Kink, basis: Basis, on: Placed, state: Unknowns, s: System, outer: Sampling) -> Missed:
     p, unit = on.p, on.unit
 
     def everywhere(u: Array, P: Array) -> tuple[Array, Array]:
-        return jax.vmap(lambda at: presses(at, P * unit[0] / unit[2], p))(states(basis, on, u))
+        return jax.vmap(lambda at: kink(at, P * unit[0] / unit[2], p))(states(basis, on, u))
 
     P = state.loads[1]
     (q, k), along = jax.linearize(everywhere, state.u, P)
     ends = points_at(basis, on, state.u, outer)
-    beyond = jax.vmap(lambda at: presses(at, P * unit[0] / unit[2], p)[0])(ends)
+    beyond = jax.vmap(lambda at: kink(at, P * unit[0] / unit[2], p)[0])(ends)
     h = jnp.asarray(basis.operators().weights) * on.jacobian
     size = _edges(q, h, beyond[0], None if basis.half else beyond[-1]) * k / unit[0]
 

@@ -28,7 +28,7 @@ class Appraised(NamedTuple):
     length: Bool[Array, ""]  #: stable with the length held
     force: Bool[Array, ""]  #: stable with the force held
     antisymmetric: Bool[Array, ""]  #: stable against antisymmetric disturbances
-    missed: Missed | None  #: what kinks of a chamber with a gap add to the error, and a varying angle
+    missed: Missed | None  #: what kinks (gaps, slack fibres) and a varying angle add to the error
 
 
 @kernel

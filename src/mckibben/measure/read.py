@@ -17,14 +17,14 @@ from mckibben.compiled.kernel import kernel
 from mckibben.compiled.rows import filled
 from mckibben.discretise.fields import Placed, place, points_at, states
 from mckibben.discretise.spectral import Line
-from mckibben.measure.kink import Missed, missed
+from mckibben.measure.kink import Missed, has_kinks, missed
 from mckibben.measure.peak import peak
 from mckibben.measure.unresolved import asks_for_step, unresolved_all
 from mckibben.model.angle import cos, radians, slope
 from mckibben.model.energy import fittings_density, lagrangian
 from mckibben.model.fibres import axial_density, fibre_densities
 from mckibben.model.friction import crossing_density, crossing_moment
-from mckibben.model.gap import contact_of, inflated, leaves
+from mckibben.model.gap import contact_of, inflated
 from mckibben.model.kinematics import fibre_strains, height_rate, radius, volume_rate
 from mckibben.model.parameters import Number, Parameters
 from mckibben.model.point import Point
@@ -64,7 +64,7 @@ class Reading(NamedTuple):
     largest_slope: Float[Array, ""]  #: of the meridian, |psi| [rad]
     conserved_variation: Float[Array, ""]
     coefficient_tail: Float[Array, ""]
-    missed: Missed | None = None  #: what kinks of a chamber with a gap add to the error, and a varying angle
+    missed: Missed | None = None  #: what kinks (gaps, slack fibres) and a varying angle add to the error
 
 
 def nodes(basis: Basis) -> int:
@@ -126,8 +126,8 @@ def _tail(basis: Basis, on: Placed, u: Array) -> Array:
 
 
 def with_kinks(reading: Reading, basis: Basis, on: Placed, state: Unknowns, s: System) -> Reading:
-    """A reading with what kinks add to its error, where a chamber may leave the mesh."""
-    if not leaves(on.p):
+    """A reading with what kinks add to its error, where a chamber may leave the mesh or fibres go slack."""
+    if not has_kinks(on.p):
         return reading
     return reading._replace(missed=missed(basis, on, state, s, basis.sampling(nodes(basis))))
 

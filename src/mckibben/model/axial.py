@@ -2,12 +2,13 @@
 
 from typing import Any
 
+import jax
 import jax.numpy as jnp
 
 from mckibben.compiled.arrays import Array
 from mckibben.model.parameters import Number, Parameters
 
-__all__ = ["axial_energy", "axial_tension"]
+__all__ = ["axial_energy", "axial_stiffness", "axial_tension"]
 
 
 def axial_tension(strain: Number, p: Parameters) -> Number:
@@ -23,7 +24,12 @@ def axial_energy(strain: Number, p: Parameters) -> Number:
 
 
 def _loose(strain: Number, p: Parameters) -> Any:
-    return (p.slack > 0.0) & (strain < 0.0)
+    return False if p.slack is None else strain < 0.0
+
+
+def axial_stiffness(p: Parameters) -> Number:
+    """Stiffness EA [N] of a fibre at rest, by its law the slope there."""
+    return p.EA if p.axial is None else jax.grad(lambda strain: _by_points(strain, p.axial)[0])(0.0)
 
 
 def _by_points(strain: Number, law: Any) -> tuple[Number, Number]:

@@ -65,7 +65,7 @@ class Parameters(NamedTuple):
     law: Any  #: law of the chamber: its kind is static, its constants are leaves; None for the bare braid
     tube: Tube | None = None  #: a chamber that is not the paper's; None takes the way of the paper, to the last bit
     EA: Any = None  #: axial stiffness of a fibre [N]; None where the fibres do not stretch, or by a law of their own
-    slack: Any = None  #: 1 if a fibre carries no compression, 0 if it does
+    slack: Any = None  #: 1 if a fibre that stretches carries no compression, None if it does
     compliance: Any = None  #: of both fittings together [m/N]; None where they are rigid
     stiffening: Any = None  #: `spec.Stiffening` of the fibres, None for the paper's quadratic energy
     friction: Any = None  #: `Rubbing` where crossings rub, None where they turn freely
@@ -113,7 +113,7 @@ def numbers(muscle: Muscle) -> Parameters:
         None if chamber is None else _law(chamber.law),
         tube,
         fibre.EA if fibre.axial_law is None else None,
-        (1.0 if fibre.slack else 0.0) if fibre.stretch else None,
+        1.0 if fibre.stretch and fibre.slack else None,
         None if fittings is None else fittings.compliance,
         fibre.stiffening,
         _rubbing(muscle),

@@ -18,6 +18,9 @@ SEARCH = LADDER[1]
 """Unknowns of the searches from other starts."""
 REFINED = tuple(zip(LADDER, (1e-5, 1e-8, 1e-8, 1e-8), strict=True))
 """Unknowns of the walk along the way, and to what share of it its end is found."""
+BY_PRESSURE = 1e-5
+"""The same of a way on which the pressure rises: a step beyond its end costs a search that finds nothing, and with
+hundreds of unknowns those to the share above take minutes."""
 
 
 @attrs.frozen
@@ -53,30 +56,35 @@ def way_there(bench: Bench, held: Held, b: float, tolerance: float, roughly: boo
     pressure, rest = held.get("pressure"), float(bench.p.rest) if axial == "length" else 0.0
     first = Held.of(**{axial: rest, "pressure": pressure})
 
-    def way(start: Held, target: Held, begin: Equilibrium | None = None) -> Way:
-        return Way(start, _end(bench, start, target, b, tolerance, roughly, begin))
+    def way(start: Held, target: Held, begin: Equilibrium | None = None, share: float = 0.0, few: bool = False) -> Way:
+        return Way(start, _end(bench, start, target, b, tolerance, roughly or few, begin, share))
 
     straight = way(first, held)
     if straight.end.last is not None or not pressure:
         return straight
-    rises = way(Held.of(**{axial: rest, "pressure": 0.0}), first)
+    rises = way(Held.of(**{axial: rest, "pressure": 0.0}), first, share=BY_PRESSURE)
     if rises.end.complete and rises.end.last is not None:
         return way(first, held, rises.end.last.state)
-    there = way(Held.of(**{axial: held.get(axial), "pressure": 0.0}), held)
+    unloaded = Held.of(**{axial: held.get(axial), "pressure": 0.0})
+    if rises.end.last is not None and not way(unloaded, held, share=BY_PRESSURE, few=True).end.complete:
+        return rises
+    there = way(unloaded, held, share=BY_PRESSURE)
     if there.end.complete or rises.end.last is None:
         return straight if there.end.last is None else there
     return rises
 
 
 def _end(
-    bench: Bench, start: Held, target: Held, b: float, tolerance: float, roughly: bool, begin: Equilibrium | None
-) -> BranchEnd:
-    """Where good states on the straight way end, on as many unknowns as the last of them needs."""
+    bench: Bench, start: Held, target: Held, b: float, tolerance: float, roughly: bool, begin: Equilibrium | None,
+    least: float,
+) -> BranchEnd:  # fmt: skip
+    """Where good states on the straight way end, on as many unknowns as the last of them needs, to no less than a
+    share."""
     end: BranchEnd | None = None
     for size, share in REFINED:
         problem = bench.problem(size, b)
         near = None if begin is None else embedded(begin, problem)
-        end = branch_end(problem, start, target, share, coarse=end, begin=near)
+        end = branch_end(problem, start, target, max(share, least), coarse=end, begin=near)
         if roughly or (size >= SEARCH and (end.last is None or estimated_error(end.last.state, target) <= tolerance)):
             break
     assert end is not None
