@@ -7,7 +7,7 @@ and dissipated; a loop that closes comes back to its state, and its area is what
 rougher paths give the same within the errors that are told; the force lies between the sliding branches that
 `mk.solve` tells; without friction, by numbers that are zero, the plain state; turned around, the mirrored path; and a
 path that ends early says why and keeps what was reached. Paths come from `validation/friction_options.py`. Results go
-line by line to out/random_friction.jsonl; a run that was cut short goes on where it stopped. Writes
+line by line to validation/random_friction.jsonl; a run that was cut short goes on where it stopped. Writes
 validation/random_friction.md.
 """
 
@@ -16,7 +16,7 @@ import os
 import warnings
 from typing import Any
 
-from environment import OUT
+from environment import ROOT
 from friction_options import CORNERS, drawn, path, rubbing_case, test_of
 from friction_report import INSIDE, ROUGH, report
 from options import has_profile
@@ -29,7 +29,7 @@ import numpy as np
 
 import mckibben as mk
 
-FILE = OUT / "random_friction.jsonl"
+FILE = ROOT / "validation" / "random_friction.jsonl"
 LIMIT = 240
 """Seconds of the processor that a case may take, compiling included."""
 TOLERANCE = 1e-5
@@ -184,7 +184,6 @@ def main() -> None:
     parser.add_argument("--report-only", action="store_true")
     asked = parser.parse_args()
     if not asked.report_only:
-        OUT.mkdir(exist_ok=True)
         write_lines(one, [drawn(k) for k in range(asked.first, asked.first + asked.count)], FILE, asked.workers)
     report([row for _, row in sorted(read(FILE).items())], (__doc__ or "").split("\n\n")[2])
 

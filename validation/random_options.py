@@ -7,7 +7,7 @@ with dW = F dh - V dP; the error estimate covers the difference to a finer solut
 turned around has the mirrored state; and the state stays where the force that was found is held. Where the default call
 gives no stable state, the other methods of validation/judges.py seek one, and where they find none either the branch is
 followed by arclength to where it turns back. Results go line by line to
-out/random_options.jsonl; a run that was cut short goes on where it stopped. Writes validation/random_options.md.
+validation/random_options.jsonl; a run that was cut short goes on where it stopped. Writes validation/random_options.md.
 """
 
 import argparse
@@ -15,7 +15,7 @@ import os
 from pathlib import Path
 from typing import Any
 
-from environment import OUT
+from environment import ROOT
 from judges import judge_target, turns_back
 from options import EACH, SEED, case_of, drawn, has_profile
 from random_muscles import read, within, write_lines
@@ -33,7 +33,7 @@ from mckibben.solver.equilibrium import Equilibrium
 from mckibben.solver.find import find, refine
 from mckibben.solver.held import Held
 
-FILE, PAGE = OUT / "random_options.jsonl", Path(__file__).with_name("random_options.md")
+FILE, PAGE = ROOT / "validation" / "random_options.jsonl", Path(__file__).with_name("random_options.md")
 FINE = (64, 128, 256)
 """Half-length unknowns of the states that judge: as many as it takes until what is estimated of their own error is
 below what they judge. Braids that vary from end to end have twice as many, so that the last would take half an hour."""
@@ -257,7 +257,6 @@ def main() -> None:
     parser.add_argument("--report-only", action="store_true")
     asked = parser.parse_args()
     if not asked.report_only:
-        OUT.mkdir(exist_ok=True)
         write_lines(one, [drawn(k) for k in range(asked.first, asked.first + asked.count)], FILE, asked.workers)
     report([row for _, row in sorted(read(FILE).items())])
 
