@@ -217,6 +217,15 @@ def test_a_full_folder_loses_its_oldest(monkeypatch: pytest.MonkeyPatch, tmp_pat
     assert (tmp_path / "other").exists()
 
 
+def test_what_is_used_again_is_not_the_first_to_go(tmp_path: Path) -> None:
+    file = tmp_path / f"one{folder.SUFFIX}"
+    tmp_path.chmod(0o700)
+    kept.write(file, "content")
+    os.utime(file, (1e9, 1e9))
+    assert kept.read(file) == "content"
+    assert file.stat().st_mtime > 1e9
+
+
 @pytest.mark.parametrize("call", ["--help", "run --help", "presets", "presets paper", "info", "check", "plot"])
 def test_needs_no_jax(call: str, tmp_path: Path) -> None:
     if call == "check":

@@ -15,8 +15,9 @@ from pathlib import Path
 __all__ = ["LIMIT", "SUFFIX", "content", "folder", "off", "private", "processor", "ready", "size"]
 
 SUFFIX = ".kernel"
-LIMIT = 2**30
-"""Bytes above which the oldest files are deleted, until half is left: some 500 functions of one to a few MB."""
+LIMIT = 2**31
+"""Bytes above which files are deleted, those first that were not used for longest, until half is left: some 1,000
+functions of one to a few MB."""
 _READING = os.O_RDONLY
 for _flag in ("O_NOFOLLOW", "O_NONBLOCK", "O_BINARY"):  # as far as the system has them; a pipe must not be waited for
     _READING |= getattr(os, _flag, 0)

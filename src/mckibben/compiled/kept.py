@@ -71,6 +71,8 @@ def read(file: Path) -> Any:
     digest, body = content[len(said) : len(said) + _DIGEST], memoryview(content)[len(said) + _DIGEST :]
     if digest != _digest(said, body):
         return None
+    with suppress(OSError):  # a folder that is too full loses first what was not used for longest
+        os.utime(file)
     try:
         return pickle.loads(body)
     except Exception:  # such as a class that is no longer there

@@ -28,7 +28,7 @@ from mckibben.model.wall import lying
 from mckibben.solver.problem import Basis
 from mckibben.solver.system import System, Unknowns
 
-__all__ = ["Missed", "has_kinks", "missed"]
+__all__ = ["Missed", "kinks_of", "missed"]
 
 WITHIN, AT_END = 1.0 / 8.0, 3.0 / 8.0
 """Largest error over h times the change of slope from point to point: between two points, and before the first.
@@ -78,18 +78,13 @@ def kinks_of(p: Parameters) -> tuple[Kink, ...]:
     return ((presses,) if leaves(p) else ()) + ((pulls,) if p.slack is not None else ())
 
 
-def has_kinks(p: Parameters) -> bool:
-    """Whether the energy may have kinks along the length."""
-    return bool(kinks_of(p))
-
-
 def missed(basis: Basis, on: Placed, state: Unknowns, s: System, outer: Sampling) -> Missed:
     """Bounds of what a state owes to kinks between its points; 0 where all of it is on one side of them.
 
     The first point of `outer` is a fitting; so is its last one on a full line.
     """
     each = [_missed(kink, basis, on, state, s, outer) for kink in kinks_of(on.p)]
-    return jax.tree.map(lambda *bounds: sum(bounds[1:], bounds[0]), *each)
+    return jax.tree.map(lambda *bounds: sum(bounds), *each)
 
 
 def _missed(kink: Kink, basis: Basis, on: Placed, state: Unknowns, s: System, outer: Sampling) -> Missed:

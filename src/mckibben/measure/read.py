@@ -17,7 +17,7 @@ from mckibben.compiled.kernel import kernel
 from mckibben.compiled.rows import filled
 from mckibben.discretise.fields import Placed, place, points_at, states
 from mckibben.discretise.spectral import Line
-from mckibben.measure.kink import Missed, has_kinks, missed
+from mckibben.measure.kink import Missed, kinks_of, missed
 from mckibben.measure.peak import peak
 from mckibben.measure.unresolved import asks_for_step, unresolved_all
 from mckibben.model.angle import cos, radians, slope
@@ -127,7 +127,7 @@ def _tail(basis: Basis, on: Placed, u: Array) -> Array:
 
 def with_kinks(reading: Reading, basis: Basis, on: Placed, state: Unknowns, s: System) -> Reading:
     """A reading with what kinks add to its error, where a chamber may leave the mesh or fibres go slack."""
-    if not has_kinks(on.p):
+    if not kinks_of(on.p):
         return reading
     return reading._replace(missed=missed(basis, on, state, s, basis.sampling(nodes(basis))))
 
