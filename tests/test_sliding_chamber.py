@@ -9,11 +9,15 @@ import pytest
 from numpy.testing import assert_allclose
 
 import mckibben as mk
+from mckibben.experiments import walked as walked_module
+from mckibben.experiments.going import Going
 from mckibben.model import slide
 from mckibben.model.friction import Remembered
 from mckibben.model.parameters import parameters
 from mckibben.model.point import Point
 from mckibben.model.wall import chamber_density, chamber_pull
+from mckibben.solver.held import Held
+from mckibben.solver.problem import Problem
 from mckibben.spec.text import from_mapping, to_mapping
 
 pytestmark = pytest.mark.effects
@@ -208,3 +212,26 @@ def test_chambers_that_cannot_slide() -> None:
             muscle.replace("friction", mk.Friction(chamber_coefficient=0.3))
     with pytest.raises(mk.SpecError, match="does not go with a map"):
         mk.chart(sliding(0.3), length="90 mm to 110 mm", pressure="0 to 1 bar")
+
+
+def test_a_chamber_lost_on_the_way_is_sought_at_the_first_pressure(monkeypatch: pytest.MonkeyPatch) -> None:
+    """The same state as by the way, as long as no crossing turns further than in a step."""
+    muscle = sliding(0.3).replace("braid.fibre.stretch", True)
+    usual = mk.run(muscle, isobaric("1 bar", 85.0, 84.0), tolerance=1e-3)
+    way, lost = walked_module.step_to, []
+
+    def step_to(problem: Problem, here: Going, begin: Held, end: Held, **more: Any) -> Going | None:
+        if begin.get("pressure") == 0.0:
+            lost.append(end)
+            return None
+        return way(problem, here, begin, end, **more)
+
+    monkeypatch.setattr(walked_module, "step_to", step_to)
+    found = mk.run(muscle, isobaric("1 bar", 85.0, 84.0), tolerance=1e-3)
+    assert lost
+    assert found.status == "complete"
+    assert_allclose(found.force, usual.force, rtol=1e-8)
+    # Neither has rubbed: the chamber gives elastically before it slides.
+    assert_allclose(found.data["dissipated"], usual.data["dissipated"], atol=1e-15)
+    monkeypatch.setattr(walked_module, "LARGEST_TURN", 1e-9)
+    assert mk.run(muscle, isobaric("1 bar", 85.0, 84.0), tolerance=1e-3).reached == 0

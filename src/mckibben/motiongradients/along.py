@@ -1,4 +1,4 @@
-"""RowEnd the rows of a motion once more, as a function of the numbers of its rig that JAX can differentiate.
+"""Along the rows of a motion once more, as a function of the numbers of its rig that JAX can differentiate.
 
 The steps are those of Dormand and Prince, as SciPy's RK45 has them. They stay what parts of their stretches they were;
 the stretches themselves move with the numbers: a jump with its time, the end of a mode with the state (page of motion).
