@@ -138,6 +138,8 @@ def fmu(chart: Any) -> list[dict[str, Any]]:
 def effects() -> list[dict[str, Any]]:
     """Curves of a muscle whose crossings rub, and of one whose tube is smaller than its braid."""
     test = mk.Isobaric(length="90 mm to 115 mm", pressure="1 bar", points=CURVE)
+    filled = mk.Isometric(length="115 mm", pressure="0 to 1 bar", points=CURVE)
+    hanging = mk.Isotonic(force="10 N", pressure="0.2 bar to 1 bar", points=CURVE)
     rubbing = MUSCLE.replace("friction", mk.Friction(coefficient=0.3, arm="0.1 mm", constant="0.01 N mm"))
     tube = mk.Chamber(
         outer_diameter="20 mm", inner_diameter="18 mm", gap=True, law=mk.MooneyRivlin(c1="40 kPa", c2="4 kPa")
@@ -147,5 +149,9 @@ def effects() -> list[dict[str, Any]]:
     return [
         row("mk.run in full, isobaric", timed(lambda: mk.run(MUSCLE, test), 5)),
         row("mk.run in full, isobaric, with friction", timed(lambda: mk.run(rubbing, test), 5)),
+        row("mk.run in full, filled from rest", timed(lambda: mk.run(MUSCLE, filled), 5)),
+        row("mk.run in full, filled from rest, with friction", timed(lambda: mk.run(rubbing, filled), 5)),
+        row("mk.run in full, isotonic", timed(lambda: mk.run(MUSCLE, hanging), 5)),
+        row("mk.run in full, isotonic, with friction", timed(lambda: mk.run(rubbing, hanging), 5)),
         row("mk.run in full, a tube that comes to touch", timed(lambda: mk.run(loose, pressed, tolerance=1e-4), 3)),
     ]

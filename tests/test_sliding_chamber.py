@@ -9,6 +9,7 @@ import pytest
 from numpy.testing import assert_allclose
 
 import mckibben as mk
+from mckibben.experiments import going
 from mckibben.experiments import walked as walked_module
 from mckibben.experiments.going import Going
 from mckibben.model import slide
@@ -235,3 +236,24 @@ def test_a_chamber_lost_on_the_way_is_sought_at_the_first_pressure(monkeypatch: 
     assert_allclose(found.data["dissipated"], usual.data["dissipated"], atol=1e-15)
     monkeypatch.setattr(walked_module, "LARGEST_TURN", 1e-9)
     assert mk.run(muscle, isobaric("1 bar", 85.0, 84.0), tolerance=1e-3).reached == 0
+
+
+def test_a_chamber_that_begins_to_grip_is_not_thrown_back(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Without pressure bellows in a programmed braid pull evenly, under some they stick: the way there takes few walks.
+
+    With limits that are new to points that slid freely, a Newton step goes as far as the soft bellows let it.
+    """
+    along, walks = going.rub_along, []
+
+    def counted(*given: Any) -> Any:
+        walks.append(given)
+        return along(*given)
+
+    monkeypatch.setattr(going, "rub_along", counted)
+    muscle = sliding(0.38, mk.Chamber(law=mk.Bellows(axial_stiffness=0.26), lies="inside", length="80 mm"))
+    braid = {"braid.fibre.stretch": True, "braid.angle_profile": mk.AngleProfile(angle=["42 deg"])}
+    for name, value in braid.items():
+        muscle = muscle.replace(name, value)
+    found = mk.run(muscle, isobaric("1 bar", 99.0, 98.5), tolerance=1e-2)
+    assert found.status == "complete"
+    assert len(walks) < 40  # 93 without

@@ -62,7 +62,7 @@ def rubbed(
     for _ in range(MOST):
         if _interrupted(legs or rough) or (errors and all((error <= tolerance).all() for error in errors)):
             break
-        points = smooth and (_points_lack(problem, legs or rough, errors) if errors else not few)
+        points = smooth and (_points_lack(problem, legs or rough, errors, tolerance) if errors else not few)
         if _dense(problem) if points else not left:
             break
         if legs is not None and not _dense(problem):  # twice the points are as many as twice the unknowns have
@@ -84,13 +84,13 @@ def rubbed(
     return [_part(problem, *pair) for pair in zip(legs, errors, strict=True)]
 
 
-def _points_lack(problem: Problem, legs: list[Leg], errors: list[np.ndarray]) -> bool:
-    """Whether a path lacks points, not unknowns.
+def _points_lack(problem: Problem, legs: list[Leg], errors: list[np.ndarray], tolerance: float) -> bool:
+    """Whether a path lacks points, not unknowns: the series end within the tolerance, or err less than all else.
 
     Where slipping crossings border on sticking ones, the sum over the points misses what lies between two of them; by
     more unknowns alone that does not become less. A chamber that slides has a stress that jumps, which takes unknowns.
     """
-    return SAFETY * _largest([_by_tail(problem, leg) for leg in legs]) <= SERIES * _largest(errors)
+    return _largest([_by_tail(problem, leg) for leg in legs]) <= max(tolerance, SERIES / SAFETY * _largest(errors))
 
 
 def denser(bench: Bench, problem: Problem) -> Problem:

@@ -44,9 +44,12 @@ the rounding of a tension leaves where there is none."""
 ROUGH, SHARE = 1e-4, 1e-2
 """What is enough of `CLOSE` in a round whose moments are not the last: the first one, and over the change of moments in
 the round before in the others."""
-SLOW, LEAST = 0.6, 0.125
-"""Of a chamber that slides: change of a Newton step, over that of the one before, above which the next is halved, lest
-points go on changing between sticking and sliding; and the least part that is taken of a step."""
+FREE, SLOW, LEAST = 6, 0.6, 0.125
+"""Newton steps that are always whole; change of a later one, over that of the one before, above which the next is
+halved, lest points go on changing between sticking and slipping; and the least part that is taken of a step."""
+
+GRIPS = 0.5
+"""Change of the chamber's limits in a round, over the largest, from which on the next one begins as if nothing slid."""
 
 STRAIGHT, FORETOLD = 1e-6, 4.0
 """Of a step along a path: how far it may lie off the direction of the one before, over its length, and how many times
@@ -197,10 +200,9 @@ def _stepped(
             first = stuck & (taken == 0)
             held = jax.tree.map(lambda one, other: jnp.where(first, one, other), sticks, start.memory)
             new, change, stable = newton(state._replace(memory=held))
-            if slides:
-                share = jnp.where(change > SLOW * before, 0.5 * share, 1.4 * share)
-                share = jnp.clip(share, LEAST, 1.0)
-                new = jax.tree.map(lambda a, b: a + share * (b - a), state, new._replace(memory=state.memory))
+            circles = (change > SLOW * before) & (taken >= FREE)
+            share = jnp.clip(jnp.where(circles, 0.5 * share, 1.4 * share), LEAST, 1.0)
+            new = jax.tree.map(lambda a, b: a + share * (b - a), state, new._replace(memory=state.memory))
             return new, change, taken + 1, stable, share
 
         begin = (start, jnp.asarray(jnp.inf), jnp.zeros((), int), jnp.array(True), jnp.ones(()))
@@ -212,7 +214,10 @@ def _stepped(
 
     def again(now: _Round) -> _Round:
         close = jnp.clip(SHARE * now.change, CLOSE, ROUGH)
-        found, step, taken, good = solved(now.state, stuck & (now.rounds == 0), close)
+        afresh = stuck & (now.rounds == 0)
+        if slides:  # points that slid freely so far would be thrown back too far by a limit that is new to them
+            afresh = afresh | ((now.change > GRIPS) & (now.rounds > 0))
+        found, step, taken, good = solved(now.state, afresh, close)
         inner = limits(basis, on, found)
         change = _change(inner, found.memory, on)
         return _Round(found._replace(memory=inner), change, step, now.rounds + 1, now.iterations + taken, good)
