@@ -14,6 +14,7 @@ from jaxtyping import Bool, Float, Int
 
 from mckibben.compiled.arrays import Array
 from mckibben.compiled.kernel import kernel
+from mckibben.compiled.once import once
 from mckibben.compiled.rows import filled
 from mckibben.discretise.fields import Placed, place, points_at, states
 from mckibben.discretise.spectral import Line
@@ -81,10 +82,7 @@ def read(basis: Basis, on: Placed, state: Unknowns, kept: Any = None) -> Reading
     outer = points_at(basis, on, state.u, sampling)
     inner, outer = (jax.vmap(lambda at: inflated(at, P, p))(one) for one in (inner, outer))
 
-    def local(at: Point, memory: Any) -> tuple[tuple[Array, ...], Array, Array]:
-        return tuple(_densities(at, p, memory).values()), height_rate(at, p), volume_rate(at, p)
-
-    densities, rate, swept = jax.vmap(local)(inner, memory)
+    densities, rate, swept = jax.vmap(lambda at, memory: _local(at, p, memory))(inner, memory)
     first, of_first = jax.tree.map(lambda rows: rows[0], (inner, memory))
     names = tuple(_densities(first, p, of_first))
     weights = jnp.asarray(operators.weights) * on.jacobian
@@ -147,6 +145,12 @@ def with_unresolved(
     return reading._replace(missed=both)
 
 
+@once
+def _local(at: Point, p: Parameters, memory: Any) -> tuple[tuple[Number, ...], Number, Number]:
+    """Densities of energy, of the length and of the volume."""
+    return tuple(_densities(at, p, memory).values()), height_rate(at, p), volume_rate(at, p)
+
+
 def _densities(at: Point, p: Parameters, memory: Any = None) -> dict[str, Number]:
     """The parts of the stored energy per unit v [J/m], by name."""
     parts = dict(zip(ENERGIES, (*fibre_densities(at, p), chamber_density(at, p)), strict=True))
@@ -178,26 +182,35 @@ def costates(
         last = outer[-1] - end if basis.closes else outer[middle]
         return inner - last, outer - last
 
-    def pulls(at: Point, memory: Any) -> Array:
-        return slope(lambda theta: lagrangian(at._replace(theta=theta), p, F, P, memory=memory), at.theta)
-
     if at.stretch is None:
-        inner, outer = swept(jax.vmap(pulls)(at, memory), M)
+        pulls = jax.vmap(lambda at, memory: _by_angle(at, (F, P, 0.0), p, memory))(at, memory)
+        inner, outer = swept(pulls, M)
         return (inner,), (outer,)
-
-    def loaded(at: Point, memory: Any) -> Number:
-        return lagrangian(at, p, F, P, M, memory)
-
-    def turned(at: Point, memory: Any) -> tuple[Number, Number]:
-        stretched = jax.grad(lambda factor: loaded(at._replace(stretch=factor * at.stretch), memory))(1.0)
-        return stretched, slope(lambda theta: loaded(at._replace(theta=theta), memory), at.theta)
-
-    by_stretch, by_theta = jax.vmap(turned)(at, memory)
+    by_stretch = jax.vmap(lambda at, memory: _by_stretch(at, loads, p, memory))(at, memory)
+    by_theta = jax.vmap(lambda at, memory: _by_angle(at, loads, p, memory))(at, memory)
     inner_stretch, outer_stretch = swept(by_stretch, 0.0)
     inner, outer = swept(by_theta - inner_stretch * at.excess / cos(at.theta) ** 2, 0.0)
     return (inner, inner_stretch), (outer, outer_stretch)
 
 
+@once
+def _by_angle(at: Point, loads: tuple[Number, ...], p: Parameters, memory: Any) -> Number:
+    """dL/dtheta at one point."""
+    return slope(lambda theta: lagrangian(at._replace(theta=theta), p, *loads, memory=memory), at.theta)
+
+
+@once
+def _by_stretch(at: Point, loads: tuple[Number, ...], p: Parameters, memory: Any) -> Number:
+    """dL/dlog(lambda) at one point."""
+
+    def loaded(factor: Number) -> Number:
+        return lagrangian(at._replace(stretch=factor * at.stretch), p, *loads, memory=memory)
+
+    found: Number = jax.grad(loaded)(1.0)
+    return found
+
+
+@once
 def _fields(
     at: Point, costates: Costates, F: Number, P: Number, p: Parameters, memory: Any
 ) -> dict[str, Number]:  # fmt: skip

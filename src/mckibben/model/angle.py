@@ -12,6 +12,7 @@ from typing import Any, NamedTuple
 import jax
 import jax.numpy as jnp
 
+from mckibben.compiled.once import once
 from mckibben.model.parameters import Number, functions
 
 
@@ -31,7 +32,7 @@ class Known(NamedTuple):
 @cache
 def _both() -> Callable[[Number], tuple[Number, Number]]:
     """Sine and cosine together, differentiated by each other."""
-    both = jax.custom_jvp(_sine_and_cosine)
+    both = jax.custom_jvp(once(_sine_and_cosine))
 
     @both.defjvp
     def _(at: tuple[Number], by: tuple[Number]) -> tuple[tuple[Number, Number], tuple[Number, Number]]:

@@ -18,12 +18,13 @@ import jax.numpy as jnp
 from jaxtyping import Bool, Float
 
 from mckibben.compiled.arrays import Array
-from mckibben.discretise.fields import Integral, Placed, Variables, known, variables
+from mckibben.compiled.once import once
+from mckibben.discretise.fields import Form, Integral, Placed, Variables, known, variables
 from mckibben.discretise.products import pairs, sandwich, swept
 from mckibben.model.angle import Known
 from mckibben.model.energy import remember, stored, works
 from mckibben.model.gap import found_hoop, inflated, leaves
-from mckibben.model.parameters import Number
+from mckibben.model.parameters import Number, Parameters
 from mckibben.solver.trust_region import FLOOR
 
 __all__ = [
@@ -99,66 +100,15 @@ def localise(basis: Any, on: Placed, state: Unknowns, share: Number = 1.0) -> Lo
     """Derivatives at the points of a state. `share` is that of the stored energy in the Lagrangian."""
     form, p, unit = basis.form, on.p, on.unit
     P = state.loads[1] * unit[0] / unit[2]
-    x = variables(basis, on, state.u)
-    weight = jnp.asarray(basis.operators().weights) * on.jacobian
-    count = len(x)
-
-    def at(values: Variables, near: Variables) -> Variables:
-        """Local variables with other values, whose sines and cosines are known."""
-        pairs_of = zip(values, near, strict=True)
-        return tuple(one._replace(value=value) if isinstance(one, Known) else value for value, one in pairs_of)
-
-    def plain(near: Variables) -> Variables:
-        return tuple(one.value if isinstance(one, Known) else one for one in near)
-
-    def density(values: Variables, near: Variables, memory: Any, hoop: Any, made: Any) -> Number:
-        point = form.point(at(values, near), p, made)
-        loads = zip(state.loads, works(point, p), unit[1:], strict=False)
-        return share * stored(point, p, memory, P, hoop) / unit[0] - sum(
-            load * work / size for load, work, size in loads
-        )
-
-    def slopes(near: Variables, memory: Any, hoop: Any, made: Any) -> tuple[Any, Any, Any]:
-        values = plain(near)
-        derived = jax.value_and_grad(lambda *v: density(v, near, memory, hoop, made), tuple(range(count)))
-        (value, first), change = jax.linearize(derived, *values)
-        return value, tuple(first), upper(by_each(lambda *by: change(*by)[1], values))
-
-    def working(near: Variables, hoop: Any, made: Any) -> tuple[tuple[Array, ...], tuple[tuple[Array, ...], ...]]:
-        """What loads do work on, and its derivatives by each local variable."""
-
-        def densities(*values: Number) -> tuple[Number, ...]:
-            point = inflated(form.point(at(values, near), p, made), P, p, hoop)
-            return tuple(work / size for work, size in zip(works(point, p), sizes, strict=True))
-
-        values, sizes = plain(near), tuple(unit[1:])
-        found, change = jax.linearize(densities, *values)
-        return found, by_each(change, values)
-
-    def swelling(near: Variables, hoop: Any, made: Any) -> Array:
-        """By how much the volume of a chamber grows with the pressure while the mesh stays."""
-        point = form.point(near, p, made)
-        grown: Array = jax.grad(lambda P: works(inflated(point, P, p, hoop), p)[1])(P)
-        return grown * unit[0] / unit[2] ** 2
-
-    def turning(near: Variables, made: Any, one: Integral) -> tuple[tuple[Array, ...], tuple[tuple[Array, ...], ...]]:
-        values = plain(near)
-
-        def rate(*some: Number) -> Number:
-            every = list(values)
-            for k, value in zip(one.by, some, strict=True):
-                every[k] = value
-            return one.rate(at(tuple(every), near), p, made)
-
-        some = tuple(values[k] for k in one.by)
-        first, change = jax.linearize(jax.grad(rate, tuple(range(len(some)))), *some)
-        return tuple(first), upper(by_each(change, some))
-
-    near, made = known(form, x), on.made
+    near, made = known(form, variables(basis, on, state.u)), on.made
     hoops = jax.vmap(lambda near, made: found_hoop(form.point(near, p, made), P, p))(near, made) if leaves(p) else None
-    value, first, second = jax.vmap(slopes)(near, state.memory, hoops, made)
-    done, done_first = jax.vmap(working)(near, hoops, made)
-    turned = [jax.vmap(partial(turning, one=one))(near, made) if one.by else ((), ()) for one in form.integrals]
+
+    def at_point(near: Variables, memory: Any, hoop: Any, made: Any) -> tuple[Any, ...]:
+        found: tuple[Any, ...] = _at_point(form, near, memory, hoop, made, p, unit, state.loads, share)
+        return found
+
+    (value, first, second), (done, done_first), turned, swells = jax.vmap(at_point)(near, state.memory, hoops, made)
+    weight = jnp.asarray(basis.operators().weights) * on.jacobian
     return Local(
         weight * value,
         tuple(weight * f for f in first),
@@ -167,8 +117,56 @@ def localise(basis: Any, on: Placed, state: Unknowns, share: Number = 1.0) -> Lo
         tuple(tuple(weight * f for f in row) for row in done_first),
         tuple(tuple(on.jacobian * f for f in turns) for turns, _ in turned),
         tuple(tuple(tuple(on.jacobian * f for f in row) for row in bends) for _, bends in turned),
-        weight * jax.vmap(swelling)(near, hoops, made) if leaves(p) else None,
+        None if swells is None else weight * swells,
     )
+
+
+@partial(once, static=0)
+def _at_point(
+    form: Form, near: Variables, memory: Any, hoop: Any, made: Any, p: Parameters, unit: Array, loads: Array,
+    share: Number,
+) -> tuple[Any, ...]:  # fmt: skip
+    """Derivatives at one point: of L, what loads do work on, the rates of integrals, and the volume by the pressure."""
+    P = loads[1] * unit[0] / unit[2]
+    count = len(near)
+    values = tuple(one.value if isinstance(one, Known) else one for one in near)
+
+    def at(values: Variables) -> Variables:
+        """Local variables with other values, whose sines and cosines are known."""
+        pairs_of = zip(values, near, strict=True)
+        return tuple(one._replace(value=value) if isinstance(one, Known) else value for value, one in pairs_of)
+
+    def density(*values: Number) -> Number:
+        point = form.point(at(values), p, made)
+        terms = zip(loads, works(point, p), unit[1:], strict=False)
+        return share * stored(point, p, memory, P, hoop) / unit[0] - sum(
+            load * work / size for load, work, size in terms
+        )
+
+    def densities(*values: Number) -> tuple[Number, ...]:
+        point = inflated(form.point(at(values), p, made), P, p, hoop)
+        return tuple(work / size for work, size in zip(works(point, p), tuple(unit[1:]), strict=True))
+
+    def turning(one: Integral) -> tuple[tuple[Array, ...], tuple[tuple[Array, ...], ...]]:
+        def rate(*some: Number) -> Number:
+            every = list(values)
+            for k, value in zip(one.by, some, strict=True):
+                every[k] = value
+            return one.rate(at(tuple(every)), p, made)
+
+        some = tuple(values[k] for k in one.by)
+        first, change = jax.linearize(jax.grad(rate, tuple(range(len(some)))), *some)
+        return tuple(first), upper(by_each(change, some))
+
+    (value, first), change = jax.linearize(jax.value_and_grad(density, tuple(range(count))), *values)
+    slopes = value, tuple(first), upper(by_each(lambda *by: change(*by)[1], values))
+    done, change_done = jax.linearize(densities, *values)
+    turned = [turning(one) if one.by else ((), ()) for one in form.integrals]
+    swells = None
+    if leaves(p):  # by how much the volume of a chamber grows with the pressure while the mesh stays
+        point = form.point(near, p, made)
+        swells = jax.grad(lambda P: works(inflated(point, P, p, hoop), p)[1])(P) * unit[0] / unit[2] ** 2
+    return slopes, (done, by_each(change_done, values)), turned, swells
 
 
 def assemble(basis: Any, on: Placed, local: Local, count: int, together: bool = False) -> System:
