@@ -196,15 +196,17 @@ def costates(
 @once
 def _by_angle(at: Point, loads: tuple[Number, ...], p: Parameters, memory: Any) -> Number:
     """dL/dtheta at one point."""
-    return slope(lambda theta: lagrangian(at._replace(theta=theta), p, *loads, memory=memory), at.theta)
+    F, P, M = loads
+    return slope(lambda theta: lagrangian(at._replace(theta=theta), p, F, P, M, memory), at.theta)
 
 
 @once
 def _by_stretch(at: Point, loads: tuple[Number, ...], p: Parameters, memory: Any) -> Number:
     """dL/dlog(lambda) at one point."""
+    F, P, M = loads
 
     def loaded(factor: Number) -> Number:
-        return lagrangian(at._replace(stretch=factor * at.stretch), p, *loads, memory=memory)
+        return lagrangian(at._replace(stretch=factor * at.stretch), p, F, P, M, memory)
 
     found: Number = jax.grad(loaded)(1.0)
     return found
