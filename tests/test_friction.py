@@ -9,6 +9,8 @@ import pytest
 from numpy.testing import assert_allclose, assert_array_equal
 
 import mckibben as mk
+from mckibben.experiments import going
+from mckibben.experiments import rubbing as rubbing_module
 from mckibben.experiments import walked as walked_module
 from mckibben.model import friction
 from mckibben.model.parameters import parameters
@@ -290,6 +292,34 @@ def test_many_states_at_once_or_one_by_one(monkeypatch: pytest.MonkeyPatch) -> N
     assert_allclose(at_once.force, one_by_one.force, rtol=1e-9)
     assert_allclose(at_once.data["dissipated"], one_by_one.data["dissipated"], rtol=1e-8)
     assert at_once.data["iterations"].sum() < one_by_one.data["iterations"].sum()
+
+
+def test_newton_does_not_go_round_in_circles(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Filled from rest at a fixed length, crossings begin to slip from the fittings on: every walk gets on."""
+    walk, reached = going.rub_along, []
+
+    def counted(*given: Any) -> Any:
+        found = walk(*given)
+        reached.append(int(np.sum(found.good)))
+        return found
+
+    monkeypatch.setattr(going, "rub_along", counted)
+    assert mk.run(rubbing(BOTH), mk.Isometric(length="115 mm", pressure="0 to 1 bar", points=21)).status == "complete"
+    assert min(reached) > 0  # where every Newton step is whole, 5 of 22 walks find no state
+
+
+def test_unknowns_are_not_doubled_in_vain(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Under a weight the series of 24 unknowns end within the tolerance: what is left of the error is the steps'."""
+    walk, unknowns = rubbing_module.walked, []
+
+    def counted(bench: Any, problem: Any, *given: Any, **named: Any) -> Any:
+        unknowns.append(problem.basis.unknowns)
+        return walk(bench, problem, *given, **named)
+
+    monkeypatch.setattr(rubbing_module, "walked", counted)
+    found = mk.run(rubbing(BOTH), mk.Isotonic(force="10 N", pressure="0.2 bar to 1 bar", points=21))
+    assert unknowns == [24, 24]
+    assert 1e-6 < float(found.data["error_estimate"].max()) < 2e-6  # with 48 unknowns too
 
 
 @pytest.mark.parametrize("ends", ["clamped", "pinned"])

@@ -1,8 +1,8 @@
 """Parts of kernels that Python runs through once for all of them.
 
-Most of the time until a first result goes into tracing: Python runs through the same pointwise mechanics, and through
-its derivatives, for every kernel and every number of unknowns. What is marked here is kept as a program that JAX copies
-into whatever kernel uses it; arguments of other shapes or structures are run through anew.
+Some two fifths of the time until a first result went into tracing: Python ran through the same pointwise mechanics, and
+through its derivatives, for every kernel and every number of unknowns. What is marked here is kept as a program that
+JAX copies into whatever kernel uses it; arguments of other shapes or structures are run through anew.
 """
 
 from collections.abc import Callable
